@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace translucube::api {
+
+/// One fault of a document: where (RFC 6901 JSON pointer, "" for the whole) and what.
+struct Fault {
+  std::string pointer;
+  std::string detail;
+  friend bool operator==(const Fault&, const Fault&) = default;
+};
+
+/// Every way in which the service refuses, in one table (problem.cpp): code -> stable type URI,
+/// HTTP status, title.
+enum class ProblemCode {
+  malformed_json,          // 400
+  invalid_request,         // 422
+  idempotency_mismatch,    // 422
+  not_found,               // 404
+  method_not_allowed,      // 405
+  not_acceptable,          // 406
+  conflict,                // 409: the state does not allow it (image of a failed render, ...)
+  not_ready,               // 409: the image of a render that is still queued or running
+  payload_too_large,       // 413
+  unsupported_media_type,  // 415
+  overloaded,              // 503
+  storage_failure,         // 507: full disk, store not writable
+  internal,                // 500
+};
+
+struct ProblemKind {
+  const char* type;   ///< stable, e.g. "urn:translucube:problem:invalid-request"
+  int status;
+  const char* title;
+};
+const ProblemKind& kind(ProblemCode code);
+
+/// An RFC 9457 problem: what `application/problem+json` carries.
+struct Problem {
+  ProblemCode code = ProblemCode::internal;
+  std::string detail;
+  std::vector<Fault> faults;
+};
+/// The JSON text. Never echoes a client's document.
+std::string to_json(const Problem& problem);
+/// The same for a terminal: title, detail, then a line "pointer: detail" for each fault.
+std::string to_text(const Problem& problem);
+
+}  // namespace translucube::api

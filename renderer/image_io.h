@@ -1,0 +1,45 @@
+#pragma once
+
+// The only door to image files; image_io.cpp is the only file that includes OpenImageIO.
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "renderer/image.h"
+
+namespace translucube {
+
+enum class ImageFormat { png, exr, tiff, jpeg };
+
+std::string_view name(ImageFormat format);       ///< "png", "exr", "tiff", "jpeg"
+std::string_view mime_type(ImageFormat format);  ///< "image/png", "image/x-exr", ...
+std::optional<ImageFormat> image_format(std::string_view name_or_extension);  ///< "jpg" too
+
+struct ImageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What a picture carries beside its pixels.
+struct ImageMetadata {
+  std::string request;      ///< the canonical request, JSON text
+  std::string colorspace;   ///< of the pixels: "lin_rec709", "ACEScg", "XYZ" or "<display>/<view>"
+};
+
+/// Reads any image as linear float RGB (a grey image is spread over the channels).
+/// Throws ImageError for a file that cannot be read, is not finite, or is larger than 2^28 pixels.
+Image read_image(const std::filesystem::path& file);
+
+/// The metadata written by write_image, empty strings where there is none. Throws ImageError.
+ImageMetadata read_metadata(const std::filesystem::path& file);
+
+/// Writes scene-linear float (EXR: 32-bit float, with chromaticities of the colorspace) or display
+/// values (PNG, TIFF: 16 bit; JPEG: 8 bit, quality 95), with the metadata in the header (PNG text
+/// "Description"/EXIF where the format has nothing better). Throws ImageError; an incomplete file may stay
+/// behind: write to a temporary name.
+void write_image(const std::filesystem::path& file, const Image& image, ImageFormat format,
+                 const ImageMetadata& metadata);
+
+}  // namespace translucube

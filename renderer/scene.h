@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <variant>
+
+#include "renderer/material.h"
+#include "renderer/vec.h"
+
+namespace translucube {
+
+struct SphereObject {
+  double radius_mm = 20;  ///< centred at the origin
+  friend bool operator==(const SphereObject&, const SphereObject&) = default;
+};
+struct MeshObject {
+  std::filesystem::path file;  ///< OBJ or PLY, in millimetres, closed
+  friend bool operator==(const MeshObject&, const MeshObject&) = default;
+};
+using ObjectSpec = std::variant<SphereObject, MeshObject>;
+
+struct ImageEnvironmentSpec {
+  std::filesystem::path file;  ///< lat-long, linear RGB
+};
+struct ConstantEnvironmentSpec {
+  Rgb radiance{1, 1, 1};
+};
+struct EnvironmentSpec {
+  std::variant<ConstantEnvironmentSpec, ImageEnvironmentSpec> source;
+  double rotation_deg = 0;  ///< about +y, positive from +z towards +x
+  double scale = 1;         ///< multiplies the radiance, >= 0
+};
+
+struct CameraSpec {
+  Vec3 position_mm{0, 0, 90}, target_mm{0, 0, 0}, up{0, 1, 0};
+  double vfov_deg = 32;  ///< vertical field of view, (0, 180)
+};
+
+/// All that the picture depends on, as plain values.
+struct SceneSpec {
+  Material material;
+  ObjectSpec object;
+  EnvironmentSpec environment;
+  CameraSpec camera;
+  int width = 512, height = 512;
+  std::uint64_t seed = 1;
+};
+
+/// A resource of the scene that cannot be used: unreadable image, open or empty mesh.
+struct SceneError : std::runtime_error {
+  enum class Part { object, environment, camera };
+  Part part;
+  SceneError(Part p, const std::string& what) : std::runtime_error(what), part(p) {}
+};
+
+/// Throws SceneError with the reason if the mesh cannot be read, is empty, not finite, or not closed
+/// (every edge shared by two triangles of opposite orientation). Outward orientation is made, not asked for.
+void check_mesh(const std::filesystem::path& file);
+
+}  // namespace translucube
