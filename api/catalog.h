@@ -25,7 +25,7 @@ struct NamedAbsorber {
 
 struct Limits {
   std::uint64_t body_bytes = 1 << 20;
-  std::uint64_t pixels = 1 << 24;    ///< width x height
+  std::uint64_t pixels = 1 << 24;  ///< width x height
   std::uint32_t samples = 1 << 20;
   double seconds = 3600;
 };
@@ -46,10 +46,9 @@ struct Catalog {
   ServerConfig server;
   std::map<std::string, NamedAbsorber> absorbers;
   std::map<std::string, std::filesystem::path> environments;
-  std::filesystem::path display_config;              ///< OpenColorIO config
-  std::vector<std::filesystem::path> file_folders;   ///< from which requests may name files
-  bool any_file = false;                             ///< the command line: any path
-
+  std::filesystem::path display_config;             ///< OpenColorIO config
+  std::vector<std::filesystem::path> file_folders;  ///< from which requests may name files
+  bool any_file = false;                            ///< the command line: any path
 };
 
 /// Reads service.json and the folders it names (relative to its own place).

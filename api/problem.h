@@ -31,7 +31,7 @@ enum class ProblemCode {
 };
 
 struct ProblemKind {
-  const char* type;   ///< stable, e.g. "urn:translucube:problem:invalid-request"
+  const char* type;  ///< stable, e.g. "urn:translucube:problem:invalid-request"
   int status;
   const char* title;
 };

@@ -16,8 +16,9 @@ namespace translucube::api {
 
 /// `coefficients` of a material; exactly one of sigma_a and sigma_a_peak.
 struct CoefficientsRequest {
-  std::variant<std::array<double, 3>, double> sigma_a{0.0};  ///< per channel, or the absorber's peak [1/mm]
-  double alpha = 0, sigma_s = 0;                             ///< -, [1/mm]
+  std::variant<std::array<double, 3>, double> sigma_a{
+      0.0};                       ///< per channel, or the absorber's peak [1/mm]
+  double alpha = 0, sigma_s = 0;  ///< -, [1/mm]
   friend bool operator==(const CoefficientsRequest&, const CoefficientsRequest&) = default;
 };
 

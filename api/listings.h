@@ -1,0 +1,22 @@
+#pragma once
+
+// What a request may name, as the answers of the service.
+
+#include <string>
+#include <vector>
+
+#include "api/catalog.h"
+#include "renderer/color.h"
+
+namespace translucube::api {
+
+/// GET /v1/absorbers: {"absorbers": [{"name", "description", "wavelengths_nm", "values"}]}.
+std::string absorbers_json(const Catalog& catalog);
+
+/// GET /v1/environments: {"environments": [{"name"}]}.
+std::string environments_json(const Catalog& catalog);
+
+/// GET /v1/displays: {"displays": [{"name", "views": [...]}]}, the defaults first.
+std::string displays_json(const std::vector<Display>& displays);
+
+}  // namespace translucube::api
