@@ -162,13 +162,17 @@ void ObjectReader::fault(std::string_view key, std::string detail) {
 
 void ObjectReader::refuse_unknown_keys() {
   if (!object_) return;
-  for (const auto& item : object_->items())
-    if (std::find(known_.begin(), known_.end(), item.key()) == known_.end()) {
+  std::string detail;
+  for (const auto& item : object_->items()) {
+    if (std::find(known_.begin(), known_.end(), item.key()) != known_.end()) continue;
+    if (detail.empty()) {
       std::vector<std::string> names(known_.begin(), known_.end());
       std::sort(names.begin(), names.end());
       names.erase(std::unique(names.begin(), names.end()), names.end());
-      fault(item.key(), "unknown key; known here: " + name_list(names));
+      detail = "unknown key; known here: " + name_list(names);
     }
+    fault(item.key(), detail);
+  }
 }
 
 std::string name_list(const std::vector<std::string>& names) {

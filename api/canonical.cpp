@@ -1,0 +1,121 @@
+#include <nlohmann/json.hpp>
+
+#include "api/parse.h"
+
+namespace translucube::api {
+namespace {
+
+using nlohmann::json;
+
+template <typename... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+
+json point_json(const CubePoint& point) {
+  return {{"absorption", point.absorption},
+          {"roughness", point.roughness},
+          {"scattering", point.scattering}};
+}
+
+json point_json(const CoefficientsRequest& point) {
+  json object{{"alpha", point.alpha}, {"sigma_s", point.sigma_s}};
+  if (const auto* peak = std::get_if<double>(&point.sigma_a))
+    object["sigma_a_peak"] = *peak;
+  else
+    object["sigma_a"] = std::get<0>(point.sigma_a);
+  return object;
+}
+
+json absorber_json(const AbsorberRequest& absorber) {
+  return std::visit(
+      Overloaded{
+          [](const std::string& name) { return json(name); },
+          [](const RgbAbsorber& rgb) {
+            return json{{"rgb", rgb.relative}};
+          },
+          [](const SpectralAbsorber& spectrum) {
+            return json{{"wavelengths_nm", spectrum.wavelengths_nm}, {"values", spectrum.values}};
+          }},
+      absorber);
+}
+
+json material_json(const MaterialRequest& material) {
+  json object{{"ior", material.ior},
+              {"anisotropy", material.anisotropy},
+              {"reference_thickness_mm", material.reference_thickness_mm},
+              {"pigment", false}};
+  if (material.pigment_absorption_per_scattering)
+    object["pigment"] = {
+        {"absorption_per_scattering", *material.pigment_absorption_per_scattering}};
+  const auto* coefficients = std::get_if<CoefficientsRequest>(&material.point);
+  if (coefficients)
+    object["coefficients"] = point_json(*coefficients);
+  else
+    object["cube"] = point_json(std::get<CubePoint>(material.point));
+  if (!coefficients || std::holds_alternative<double>(coefficients->sigma_a))
+    object["absorber"] = absorber_json(material.absorber);
+  return object;
+}
+
+json object_json(const ObjectRequest& object) {
+  return std::visit(Overloaded{[](const SphereObject& sphere) {
+                                 return json{{"type", "sphere"}, {"radius_mm", sphere.radius_mm}};
+                               },
+                               [](const MeshRequest& mesh) {
+                                 return json{{"type", "mesh"}, {"file", mesh.file}};
+                               }},
+                    object);
+}
+
+json environment_json(const EnvironmentRequest& environment) {
+  json object = std::visit(Overloaded{[](const NamedEnvironment& named) {
+                                        return json{{"image", named.image}};
+                                      },
+                                      [](const FileEnvironment& file) {
+                                        return json{{"file", file.file}};
+                                      },
+                                      [](const ConstantEnvironment& constant) {
+                                        return json{{"constant", constant.constant}};
+                                      }},
+                           environment.source);
+  object["rotation_deg"] = environment.rotation_deg;
+  object["scale"] = environment.scale;
+  return object;
+}
+
+json quality_json(const Quality& quality) {
+  return std::visit(Overloaded{[](const SampleTarget& target) {
+                                 return json{{"samples", target.samples}};
+                               },
+                               [](const ErrorTarget& target) {
+                                 return json{{"relative_error", target.relative_error}};
+                               },
+                               [](const TimeTarget& target) {
+                                 return json{{"seconds", target.seconds}};
+                               }},
+                    quality);
+}
+
+}  // namespace
+
+std::string canonical_json(const RenderRequest& request) {
+  const CameraRequest& camera = request.camera;
+  const json document{{"material", material_json(request.material)},
+                      {"scene",
+                       {{"object", object_json(request.object)},
+                        {"environment", environment_json(request.environment)},
+                        {"camera",
+                         {{"position_mm", camera.position_mm},
+                          {"target_mm", camera.target_mm},
+                          {"up", camera.up},
+                          {"vfov_deg", camera.vfov_deg}}}}},
+                      {"image", {{"width", request.width}, {"height", request.height}}},
+                      {"quality", quality_json(request.quality)},
+                      {"model", request.model == Model::dipole ? "dipole" : "transport"},
+                      {"explorable", request.explorable},
+                      {"seed", request.seed}};
+  return document.dump();
+}
+
+}  // namespace translucube::api

@@ -1,0 +1,95 @@
+#include "api/parse.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "api/json_reader.h"
+#include "api/request_reader.h"
+
+namespace translucube::api {
+namespace {
+
+using nlohmann::json;
+
+/// Every integer up to it is exact in double precision, hence in every JSON reader.
+constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 53) - 1;
+
+void read_image(const json& value, const std::string& pointer, const Limits& limits,
+                RenderRequest& out, Faults& faults) {
+  ObjectReader image(value, pointer, faults);
+  const auto longest = std::min<std::uint64_t>(limits.pixels, std::numeric_limits<int>::max());
+  const auto width = image.integer("width", 1, longest);
+  const auto height = image.integer("height", 1, longest);
+  image.refuse_unknown_keys();
+  if (width) out.width = static_cast<int>(*width);
+  if (height) out.height = static_cast<int>(*height);
+  const bool both_right = (width || !image.has("width")) && (height || !image.has("height"));
+  if (both_right && std::uint64_t(out.width) * std::uint64_t(out.height) > limits.pixels)
+    faults.add(pointer, "width x height must be at most " + std::to_string(limits.pixels));
+}
+
+void read_quality(const json& value, const std::string& pointer, const Limits& limits, Quality& out,
+                  Faults& faults) {
+  ObjectReader quality(value, pointer, faults);
+  quality.exclusive({"samples", "relative_error", "seconds"}, Presence::required);
+  if (const auto samples = quality.integer("samples", 1, limits.samples))
+    out = SampleTarget{static_cast<std::uint32_t>(*samples)};
+  if (const auto error = quality.number("relative_error", {0, 1, true, false}))
+    out = ErrorTarget{*error};
+  if (const auto seconds = quality.number("seconds", {0, limits.seconds, true, false}))
+    out = TimeTarget{*seconds};
+  quality.refuse_unknown_keys();
+}
+
+/// Parts of the contract that this version reads and checks but does not serve.
+void refuse_what_is_not_served_yet(const RenderRequest& request, Faults& faults) {
+  if (request.material.pigment_absorption_per_scattering)
+    faults.add("/material/pigment", "pigments are not served by this version yet");
+  if (request.model == Model::dipole)
+    faults.add("/model", "the dipole model is not served by this version yet");
+  if (request.explorable)
+    faults.add("/explorable", "explorable renders are not served by this version yet");
+}
+
+}  // namespace
+
+void read_request(const json& value, const std::string& pointer, const Catalog& catalog,
+                  MaterialPoint point, RenderRequest& out, Faults& faults) {
+  ObjectReader request(value, pointer, faults);
+  const Presence material_presence =
+      point == MaterialPoint::required ? Presence::required : Presence::optional;
+  if (const json* material = request.find("material", material_presence))
+    read_material(*material, request.pointer_to("material"), catalog, point, out.material, faults);
+  if (const json* scene = request.find("scene"))
+    read_scene(*scene, request.pointer_to("scene"), catalog, out, faults);
+  if (const json* image = request.find("image"))
+    read_image(*image, request.pointer_to("image"), catalog.limits, out, faults);
+  if (const json* quality = request.find("quality"))
+    read_quality(*quality, request.pointer_to("quality"), catalog.limits, out.quality, faults);
+  if (const auto model = request.string("model")) {
+    if (model == "transport")
+      out.model = Model::transport;
+    else if (model == "dipole")
+      out.model = Model::dipole;
+    else
+      request.fault("model", "must be transport or dipole");
+  }
+  if (const auto explorable = request.boolean("explorable")) out.explorable = *explorable;
+  if (const auto seed = request.integer("seed", 0, largest_seed)) out.seed = *seed;
+  request.refuse_unknown_keys();
+}
+
+std::variant<RenderRequest, Problem> parse_render_request(std::string_view text,
+                                                          const Catalog& catalog) {
+  auto read = read_json(text, catalog.limits.body_bytes);
+  if (auto* problem = std::get_if<Problem>(&read)) return std::move(*problem);
+  auto& [value, faults] = std::get<JsonDocument>(read);
+  RenderRequest request = catalog.defaults;
+  read_request(value, "", catalog, MaterialPoint::required, request, faults);
+  refuse_what_is_not_served_yet(request, faults);
+  if (!faults.empty()) return invalid_request(faults);
+  return request;
+}
+
+}  // namespace translucube::api

@@ -1,0 +1,96 @@
+#include <algorithm>
+
+#include "api/parse.h"
+#include "renderer/material_cube.h"
+
+namespace translucube::api {
+namespace {
+
+template <typename... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+
+/// The renderer's absorbers are relative to their peak: the peak's absorption is a coefficient.
+RgbAbsorber normalized(RgbAbsorber absorber) {
+  const double peak = *std::max_element(absorber.relative.begin(), absorber.relative.end());
+  for (double& value : absorber.relative) value /= peak;
+  return absorber;
+}
+
+SpectralAbsorber normalized(SpectralAbsorber absorber) {
+  const double peak = *std::max_element(absorber.values.begin(), absorber.values.end());
+  for (double& value : absorber.values) value /= peak;
+  return absorber;
+}
+
+Absorber absorber_of(const AbsorberRequest& absorber, const Catalog& catalog) {
+  return std::visit(Overloaded{[&](const std::string& name) -> Absorber {
+                                 return normalized(catalog.absorbers.at(name).spectrum);
+                               },
+                               [](const auto& own) -> Absorber { return normalized(own); }},
+                    absorber);
+}
+
+Material material_of(const MaterialRequest& request, const Catalog& catalog) {
+  Material material;
+  material.g = request.anisotropy;
+  material.ior = request.ior;
+  if (const auto* cube = std::get_if<CubePoint>(&request.point)) {
+    material.coefficients = from_cube(*cube, request.anisotropy, request.reference_thickness_mm);
+    material.absorber = absorber_of(request.absorber, catalog);
+    return material;
+  }
+  const auto& given = std::get<CoefficientsRequest>(request.point);
+  material.coefficients.alpha = given.alpha;
+  material.coefficients.sigma_s = given.sigma_s;
+  if (const auto* peak = std::get_if<double>(&given.sigma_a)) {
+    material.coefficients.sigma_a_peak = *peak;
+    material.absorber = absorber_of(request.absorber, catalog);
+    return material;
+  }
+  const auto& channels = std::get<0>(given.sigma_a);
+  const double peak = *std::max_element(channels.begin(), channels.end());
+  material.coefficients.sigma_a_peak = peak;
+  material.absorber = peak > 0 ? normalized(RgbAbsorber{channels}) : RgbAbsorber{};
+  return material;
+}
+
+Vec3 vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+Rgb radiance(const std::array<double, 3>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+}  // namespace
+
+SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
+  SceneSpec spec;
+  spec.material = material_of(request.material, catalog);
+  spec.object = std::visit(
+      Overloaded{[](const SphereObject& sphere) -> ObjectSpec { return sphere; },
+                 [](const MeshRequest& mesh) -> ObjectSpec { return MeshObject{mesh.file}; }},
+      request.object);
+  using EnvironmentSource = decltype(spec.environment.source);
+  spec.environment.source =
+      std::visit(Overloaded{[&](const NamedEnvironment& named) -> EnvironmentSource {
+                              return ImageEnvironmentSpec{catalog.environments.at(named.image)};
+                            },
+                            [](const FileEnvironment& file) -> EnvironmentSource {
+                              return ImageEnvironmentSpec{file.file};
+                            },
+                            [](const ConstantEnvironment& constant) -> EnvironmentSource {
+                              return ConstantEnvironmentSpec{radiance(constant.constant)};
+                            }},
+                 request.environment.source);
+  spec.environment.rotation_deg = request.environment.rotation_deg;
+  spec.environment.scale = request.environment.scale;
+  spec.camera = {vector(request.camera.position_mm), vector(request.camera.target_mm),
+                 vector(request.camera.up), request.camera.vfov_deg};
+  spec.width = request.width;
+  spec.height = request.height;
+  spec.seed = request.seed;
+  return spec;
+}
+
+}  // namespace translucube::api
