@@ -1,0 +1,21 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace translucube::server {
+
+/// Milliseconds since 1970, UTC. Injected where tests turn the clock.
+using Clock = std::function<std::int64_t()>;
+
+inline std::int64_t system_clock_ms() {
+  using namespace std::chrono;
+  return duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
+}
+
+/// RFC 3339 in UTC with milliseconds.
+std::string rfc3339(std::int64_t unix_ms);
+
+}  // namespace translucube::server

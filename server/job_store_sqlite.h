@@ -1,0 +1,100 @@
+#pragma once
+
+// SQLite under RAII, for job_store.cpp alone. job_store_sqlite.cpp is the only file that includes
+// sqlite3.h; the SQL itself is in job_store.cpp.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace translucube::server::sql {
+
+/// One SQLite connection, used by one thread at a time: hold `mutex` from the first statement of a
+/// piece of work to the end of the last.
+class Connection {
+ public:
+  enum class Access { read_write, read_only };
+  /// Throws StoreError.
+  Connection(const std::filesystem::path& file, Access access);
+
+  sqlite3* handle() const { return handle_.get(); }
+  void execute(const std::string& statements);
+  int changes() const;  ///< rows that the last statement touched
+
+  mutable std::mutex mutex;
+
+ private:
+  struct Close {
+    void operator()(sqlite3* handle) const;
+  };
+  std::unique_ptr<sqlite3, Close> handle_;
+};
+
+/// A prepared statement; parameters are bound in order, columns read in order.
+class Statement {
+ public:
+  Statement(Connection& connection, std::string_view text);
+
+  template <typename... Values>
+  Statement& bind(const Values&... values) {
+    (bind_one(values), ...);
+    return *this;
+  }
+  bool step();  ///< true while there is a row
+  void run();   ///< steps to the end
+
+  std::string text(int column) const;
+  std::int64_t integer(int column) const;
+  double real(int column) const;
+  bool is_null(int column) const;
+  std::optional<std::string> optional_text(int column) const;
+  std::optional<std::int64_t> optional_integer(int column) const;
+  std::optional<double> optional_real(int column) const;
+
+ private:
+  void bind_one(std::string_view value);
+  void bind_one(const std::string& value) { bind_one(std::string_view(value)); }
+  void bind_one(const char* value) { bind_one(std::string_view(value)); }
+  void bind_one(std::int64_t value);
+  void bind_one(std::uint32_t value) { bind_one(static_cast<std::int64_t>(value)); }
+  void bind_one(int value) { bind_one(static_cast<std::int64_t>(value)); }
+  void bind_one(double value);  ///< NaN becomes NULL
+  void bind_null();
+  template <typename T>
+  void bind_one(const std::optional<T>& value) {
+    if (value)
+      bind_one(*value);
+    else
+      bind_null();
+  }
+
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  sqlite3* connection_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  int next_parameter_ = 1;
+};
+
+/// A write transaction: rolled back unless committed.
+class Transaction {
+ public:
+  explicit Transaction(Connection& connection);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  void commit();
+
+ private:
+  Connection& connection_;
+  bool open_ = true;
+};
+
+}  // namespace translucube::server::sql
