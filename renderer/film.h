@@ -16,7 +16,7 @@ struct TraceCounters {
   std::uint64_t boundary_events = 0;  ///< Fresnel or microfacet events
   std::uint64_t connections = 0;      ///< next-event estimations
   std::uint64_t nan_samples = 0;      ///< non-finite contributions: a bug, fails the render
-  double truncated_energy = 0;        ///< throughput given up at the path cap, per camera sample sum
+  double truncated_energy = 0;  ///< throughput given up at the path cap, per camera sample sum
 
   TraceCounters& operator+=(const TraceCounters& other);
 };
@@ -43,7 +43,7 @@ struct Film {
   int width = 0, height = 0, lanes = 1;
   std::uint32_t passes = 0, samples = 0;
   std::vector<float> sum;  ///< lanes x height x width x 3, over all samples
-  std::vector<float> m2;   ///< height x width x 3: sum over passes of n (mean_pass - mean)^2, lane 0
+  std::vector<float> m2;  ///< height x width x 3: sum over passes of n (mean_pass - mean)^2, lane 0
   TraceCounters counters;
   double cpu_seconds = 0;
 
@@ -60,8 +60,8 @@ Image develop(const Film& film, int lane = 0);
 /// Estimate of Var(pixel mean), height x width x 3, from the independent passes. Needs two passes.
 Image variance(const Film& film);
 
-/// Estimate of sqrt(relMSE), relMSE = mean (x - ref)^2 / (ref^2 + 0.01) over channels and pixels, the
-/// 0.1 % largest pixels set aside. NaN before the second pass.
+/// Estimate of sqrt(relMSE), relMSE = mean (x - ref)^2 / (ref^2 + 0.01) over channels and pixels,
+/// the 0.1 % largest pixels set aside. NaN before the second pass.
 double relative_error(const Film& film);
 
 /// Binary form for checkpoints: header, counters, floats, checksum; same machine only.

@@ -24,12 +24,14 @@ struct ImageError : std::runtime_error {
 
 /// What a picture carries beside its pixels.
 struct ImageMetadata {
-  std::string request;      ///< the canonical request, JSON text
-  std::string colorspace;   ///< of the pixels: "lin_rec709", "ACEScg", "XYZ" or "<display>/<view>"
+  std::string request;     ///< the canonical request, JSON text
+  std::string colorspace;  ///< of the pixels: "lin_rec709", "ACEScg", "XYZ" or "<display>/<view>"
 };
 
-/// Reads any image as linear float RGB (a grey image is spread over the channels).
-/// Throws ImageError for a file that cannot be read, is not finite, or is larger than 2^28 pixels.
+/// Reads any image as linear float RGB (a grey image is spread over the channels, alpha is left
+/// out). sRGB code values are decoded, also those of a foreign PNG or JPEG that says nothing; the
+/// numbers of our own files for other displays, and of any primaries, stay as they are. Throws
+/// ImageError for a file that cannot be read, is not finite, or is larger than 2^28 pixels.
 Image read_image(const std::filesystem::path& file);
 
 /// The metadata written by write_image, empty strings where there is none. Throws ImageError.
@@ -37,8 +39,8 @@ ImageMetadata read_metadata(const std::filesystem::path& file);
 
 /// Writes scene-linear float (EXR: 32-bit float, with chromaticities of the colorspace) or display
 /// values (PNG, TIFF: 16 bit; JPEG: 8 bit, quality 95), with the metadata in the header (PNG text
-/// "Description"/EXIF where the format has nothing better). Throws ImageError; an incomplete file may stay
-/// behind: write to a temporary name.
+/// "Description"/EXIF where the format has nothing better). Throws ImageError; an incomplete file
+/// may stay behind: write to a temporary name.
 void write_image(const std::filesystem::path& file, const Image& image, ImageFormat format,
                  const ImageMetadata& metadata);
 

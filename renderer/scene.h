@@ -54,8 +54,9 @@ struct SceneError : std::runtime_error {
   SceneError(Part p, const std::string& what) : std::runtime_error(what), part(p) {}
 };
 
-/// Throws SceneError with the reason if the mesh cannot be read, is empty, not finite, or not closed
-/// (every edge shared by two triangles of opposite orientation). Outward orientation is made, not asked for.
+/// Throws SceneError with the reason if the mesh cannot be read, is empty, not finite, or not
+/// closed (every edge shared by two triangles of opposite orientation). Outward orientation is
+/// made, not asked for.
 void check_mesh(const std::filesystem::path& file);
 
 }  // namespace translucube

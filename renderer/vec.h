@@ -44,7 +44,8 @@ constexpr float luminance(Rgb p) { return 0.2126f * p.r + 0.7152f * p.g + 0.0722
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-/// Orthonormal basis with the given z (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+/// Orthonormal basis with the given z (Duff et al. 2017, "Building an Orthonormal Basis,
+/// Revisited").
 struct Frame {
   Vec3 x, y, z;
 

@@ -1,0 +1,54 @@
+#pragma once
+
+// The air-material interface. Conventions, said once: `wo` and `wi` both point away from the
+// surface; local z is the macroscopic normal on wo's side; `eta` is the index beyond the interface
+// over the index on wo's side. Densities are per solid angle of wi. What is carried is basic
+// radiance, radiance over the index squared, so that crossing the interface needs no further factor
+// (Nicodemus 1963); in terms of Walter's f: f_basic = f eta_i^2 / eta_o^2. `f_cos` is f_basic times
+// |cos theta_i|.
+
+#include <optional>
+
+#include "renderer/fresnel.h"
+#include "renderer/microfacet.h"
+
+namespace translucube {
+
+struct SmoothInterface {
+  double ior = 1.5;
+};
+
+struct RoughInterface {
+  double ior = 1.5;
+  Ggx microfacets;
+};
+
+/// One lobe (reflection or transmission) of an interface in one direction.
+struct LobeValue {
+  double f_cos = 0;  ///< f_basic |cos theta_i|
+  double pdf = 0;  ///< of sample_rough's direction in this lobe, given that both lobes are followed
+};
+
+/// One direction of a lobe; empty where the microfacet sends no light there.
+struct LobeSample {
+  Vec3 wi;
+  double weight = 0;  ///< f_cos / pdf
+  double pdf = 0;     ///< per solid angle
+};
+
+/// Both lobes from one visible microfacet: splitting instead of choosing.
+struct RoughSample {
+  std::optional<LobeSample> reflected, transmitted;
+};
+
+RoughSample sample_rough(const Ggx& ggx, double eta, Vec3 wo, Sample2 u);
+LobeValue rough_reflection(const Ggx& ggx, double eta, Vec3 wo, Vec3 wi);    ///< wi.z > 0
+LobeValue rough_transmission(const Ggx& ggx, double eta, Vec3 wo, Vec3 wi);  ///< wi.z < 0
+
+/// Share of the light from wo that a rough interface reflects and transmits, all directions wi.
+struct DirectionalAlbedo {
+  double reflected = 0, transmitted = 0;
+};
+DirectionalAlbedo directional_albedo(const Ggx& ggx, double eta, double cos_o);
+
+}  // namespace translucube

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "renderer/image.h"
+#include "renderer/sampler.h"
+#include "renderer/vec.h"
+
+namespace translucube {
+
+/// Light from a direction, and the density with which sample() would have found it.
+struct EnvironmentValue {
+  Rgb radiance;
+  double pdf = 0;  ///< per solid angle
+};
+struct EnvironmentSample {
+  Vec3 direction;  ///< towards the light, unit
+  EnvironmentValue value;
+};
+
+/// The same radiance from everywhere.
+struct UniformEnvironment {
+  Rgb radiance{1, 1, 1};
+
+  Rgb radiance_from(Vec3) const { return radiance; }
+  EnvironmentValue value_from(Vec3) const;
+  EnvironmentSample sample(Sample2 u) const;
+};
+
+/// Lat-long image as OpenEXR defines it: u = 0.5 - atan2(x, z) / (2 pi), v = acos(y) / pi, v = 0
+/// the top row; bilinear between pixel centres, periodic in u, clamped in v.
+class ImageEnvironment {
+ public:
+  /// `rotation_rad` turns the map about +y, positive from +z towards +x. Pixels finite and >= 0.
+  ImageEnvironment(const Image& image, double rotation_rad, double scale);
+
+  Rgb radiance_from(Vec3 direction) const;
+  EnvironmentValue value_from(Vec3 direction) const;
+  /// Draws a direction in proportion to luminance times solid angle, a pixel cell at a time.
+  EnvironmentSample sample(Sample2 u) const;
+
+ private:
+  struct Texel {
+    float r, g, b, weight;  ///< weight: probability of the pixel cell x number of cells
+  };
+  /// Walker's alias table (Vose 1991).
+  struct Alias {
+    float keep;
+    std::uint32_t other;
+  };
+  struct Coordinates {
+    float x, y;       ///< in pixels, centres at halves
+    float sin_theta;  ///< polar angle from +y
+  };
+  Coordinates coordinates(Vec3 direction) const;
+  Rgb bilinear(float x, float y) const;
+  double cell_pdf(int x, int y, double sin_theta) const;
+  void build_sampling();
+
+  int width_, height_;
+  double rotation_rad_;
+  std::vector<Texel> texels_;
+  std::vector<Alias> alias_;
+};
+
+using Environment = std::variant<UniformEnvironment, ImageEnvironment>;
+
+}  // namespace translucube

@@ -1,0 +1,225 @@
+#include "renderer/film.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+
+#include "renderer/sampler.h"
+
+namespace translucube {
+
+TraceCounters& TraceCounters::operator+=(const TraceCounters& other) {
+  camera_samples += other.camera_samples;
+  flights += other.flights;
+  boundary_events += other.boundary_events;
+  connections += other.connections;
+  nan_samples += other.nan_samples;
+  truncated_energy += other.truncated_energy;
+  return *this;
+}
+
+Film::Film(int w, int h, int lane_count)
+    : width(w),
+      height(h),
+      lanes(lane_count),
+      sum(std::size_t(3) * w * h * lane_count, 0.0f),
+      m2(std::size_t(3) * w * h, 0.0f) {}
+
+void merge(Film& film, const PassFilm& pass) {
+  if (pass.width != film.width || pass.height != film.height || pass.lanes != film.lanes)
+    throw std::invalid_argument("films of different shape cannot be merged");
+  if (pass.pass.index != film.passes || pass.pass.first_sample != film.samples)
+    throw std::invalid_argument("passes must be merged in order");
+  const double before = film.samples, added = pass.pass.count;
+  if (before > 0) {
+    const auto factor = static_cast<float>(before * added / (before + added));
+    const auto inverse_before = static_cast<float>(1 / before),
+               inverse_added = static_cast<float>(1 / added);
+    for (std::size_t i = 0; i < film.m2.size(); ++i) {
+      const float delta = pass.sum[i] * inverse_added - film.sum[i] * inverse_before;
+      film.m2[i] += delta * delta * factor;
+    }
+  }
+  for (std::size_t i = 0; i < film.sum.size(); ++i) film.sum[i] += pass.sum[i];
+  film.samples += pass.pass.count;
+  film.passes += 1;
+  film.counters += pass.counters;
+  film.cpu_seconds += pass.cpu_seconds;
+}
+
+Image develop(const Film& film, int lane) {
+  Image image(film.width, film.height);
+  const float scale = film.samples > 0 ? 1.0f / static_cast<float>(film.samples) : 0.0f;
+  const float* sum = film.sum.data() + image.pixels.size() * static_cast<std::size_t>(lane);
+  std::transform(sum, sum + image.pixels.size(), image.pixels.begin(),
+                 [=](float s) { return s * scale; });
+  return image;
+}
+
+Image variance(const Film& film) {
+  // With n_k samples in pass k and variance v / n_k of its mean, E[m2] = (K - 1) v and Var(mean) =
+  // v / N.
+  if (film.passes < 2) throw std::invalid_argument("the variance needs two passes");
+  Image image(film.width, film.height);
+  const float scale =
+      1.0f / (static_cast<float>(film.passes - 1) * static_cast<float>(film.samples));
+  std::ranges::transform(film.m2, image.pixels.begin(), [=](float m2) { return m2 * scale; });
+  return image;
+}
+
+double relative_error(const Film& film) {
+  if (film.passes < 2) return std::numeric_limits<double>::quiet_NaN();
+  const double to_mean = 1.0 / film.samples;
+  const double to_variance = 1.0 / (double(film.passes - 1) * film.samples);
+  std::vector<float> error(film.m2.size() / 3, 0.0f);
+  for (std::size_t i = 0; i < film.m2.size(); ++i) {
+    const double mean = film.sum[i] * to_mean;
+    error[i / 3] += static_cast<float>(film.m2[i] * to_variance / (mean * mean + 0.01) / 3);
+  }
+  const std::size_t kept = error.size() - error.size() / 1000;
+  std::ranges::nth_element(error, error.begin() + static_cast<std::ptrdiff_t>(kept - 1));
+  double sum = 0;
+  for (std::size_t i = 0; i < kept; ++i) sum += error[i];
+  return std::sqrt(sum / static_cast<double>(kept));
+}
+
+namespace {
+
+// The checkpoint format. One struct, so that writing and reading cannot disagree.
+struct Header {
+  char magic[8];
+  std::int32_t width, height, lanes;
+  std::uint32_t pass_index, first_sample, samples;  // of a Film: passes, 0, samples
+  TraceCounters counters;
+  double cpu_seconds;
+  std::uint64_t floats;
+  std::uint64_t checksum;  // of the header with checksum 0, and of the floats
+};
+static_assert(std::is_trivially_copyable_v<Header>);
+
+constexpr char pass_magic[8] = {'T', 'C', 'P', 'A', 'S', 'S', '0', '1'};
+constexpr char film_magic[8] = {'T', 'C', 'F', 'I', 'L', 'M', '0', '1'};
+
+std::uint64_t checksum(std::string_view bytes) {
+  std::uint64_t h = bytes.size();
+  std::size_t i = 0;
+  for (; i + 8 <= bytes.size(); i += 8) {
+    std::uint64_t word;
+    std::memcpy(&word, bytes.data() + i, 8);
+    h = hash_combine(h, word);
+  }
+  std::uint64_t rest = 0;
+  if (i < bytes.size()) std::memcpy(&rest, bytes.data() + i, bytes.size() - i);
+  return hash_combine(h, rest);
+}
+
+/// Of the header with its own field blank, and of the floats.
+std::uint64_t checksum(Header header, std::string_view floats) {
+  header.checksum = 0;
+  const std::string_view head(reinterpret_cast<const char*>(&header), sizeof header);
+  return hash_combine(checksum(head), checksum(floats));
+}
+
+std::string pack(Header header, std::initializer_list<const std::vector<float>*> parts) {
+  std::string bytes(sizeof header, '\0');
+  for (const auto* part : parts) {
+    header.floats += part->size();
+    bytes.append(reinterpret_cast<const char*>(part->data()), part->size() * sizeof(float));
+  }
+  header.checksum = checksum(header, std::string_view(bytes).substr(sizeof header));
+  std::memcpy(bytes.data(), &header, sizeof header);
+  return bytes;
+}
+
+struct Unpacked {
+  Header header;
+  std::string_view floats;
+};
+
+/// `extra` planes of width x height x 3 lie behind those of the lanes.
+Unpacked unpack(std::string_view bytes, const char (&magic)[8], std::uint64_t extra) {
+  Header header;
+  if (bytes.size() < sizeof header) throw std::runtime_error("the film is cut short");
+  std::memcpy(&header, bytes.data(), sizeof header);
+  if (std::memcmp(header.magic, magic, sizeof magic) != 0)
+    throw std::runtime_error("not a film of this version");
+  const std::string_view floats = bytes.substr(sizeof header);
+  if (floats.size() % sizeof(float) != 0 || header.floats != floats.size() / sizeof(float))
+    throw std::runtime_error("the film is cut short");
+  if (checksum(header, floats) != header.checksum)
+    throw std::runtime_error("the film's checksum is wrong");
+  const auto pixels = std::uint64_t(header.width) * std::uint64_t(header.height);
+  if (header.width <= 0 || header.height <= 0 || header.lanes <= 0 ||
+      header.floats != 3 * pixels * (std::uint64_t(header.lanes) + extra))
+    throw std::runtime_error("the film's size is wrong");
+  return {header, floats};
+}
+
+std::vector<float> take(std::string_view& floats, std::size_t count) {
+  std::vector<float> values(count);
+  std::memcpy(values.data(), floats.data(), count * sizeof(float));
+  floats.remove_prefix(count * sizeof(float));
+  return values;
+}
+
+Header header_of(const char (&magic)[8], int width, int height, int lanes) {
+  Header header;
+  std::memset(static_cast<void*>(&header), 0, sizeof header);  // padding too: it is part of the checksum
+  std::memcpy(header.magic, magic, sizeof magic);
+  header.width = width;
+  header.height = height;
+  header.lanes = lanes;
+  return header;
+}
+
+}  // namespace
+
+std::string to_bytes(const PassFilm& film) {
+  Header header = header_of(pass_magic, film.width, film.height, film.lanes);
+  header.pass_index = film.pass.index;
+  header.first_sample = film.pass.first_sample;
+  header.samples = film.pass.count;
+  header.counters = film.counters;
+  header.cpu_seconds = film.cpu_seconds;
+  return pack(header, {&film.sum});
+}
+
+std::string to_bytes(const Film& film) {
+  Header header = header_of(film_magic, film.width, film.height, film.lanes);
+  header.pass_index = film.passes;
+  header.samples = film.samples;
+  header.counters = film.counters;
+  header.cpu_seconds = film.cpu_seconds;
+  return pack(header, {&film.sum, &film.m2});
+}
+
+PassFilm pass_film_from_bytes(std::string_view bytes) {
+  auto [header, floats] = unpack(bytes, pass_magic, 0);
+  PassFilm film;
+  film.width = header.width;
+  film.height = header.height;
+  film.lanes = header.lanes;
+  film.pass = {header.pass_index, header.first_sample, header.samples};
+  film.counters = header.counters;
+  film.cpu_seconds = header.cpu_seconds;
+  film.sum = take(floats, header.floats);
+  return film;
+}
+
+Film film_from_bytes(std::string_view bytes) {
+  auto [header, floats] = unpack(bytes, film_magic, 1);
+  Film film(header.width, header.height, header.lanes);
+  film.passes = header.pass_index;
+  film.samples = header.samples;
+  film.counters = header.counters;
+  film.cpu_seconds = header.cpu_seconds;
+  film.sum = take(floats, film.sum.size());
+  film.m2 = take(floats, film.m2.size());
+  return film;
+}
+
+}  // namespace translucube

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+#include "renderer/shapes.h"
+#include "renderer/vec.h"
+
+namespace translucube {
+
+struct MeshError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Triangles with shared vertices, counter-clockwise seen from outside.
+struct TriangleMesh {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+};
+
+/// Reads an OBJ or PLY file (assimp). Throws MeshError if it cannot be read or has no triangle.
+TriangleMesh read_mesh(const std::filesystem::path& file);
+
+/// Merges equal vertices, drops triangles without area, and turns the mesh outside out if its
+/// volume is negative. Throws MeshError if it is empty, not finite, or not closed: every edge must
+/// be shared by two triangles that run along it in opposite directions.
+void close_mesh(TriangleMesh& mesh);
+
+/// Signed volume (divergence theorem); > 0 if the normals point outward.
+double volume(const TriangleMesh& mesh);
+double surface_area(const TriangleMesh& mesh);
+
+/// A mesh in its own unit, ready to intersect, and where it was.
+struct BuiltMesh {
+  Mesh mesh;
+  Vec3 center;        ///< of the bounding box, in the file's unit
+  double radius = 1;  ///< of the bounding sphere about the centre: the body's unit
+};
+/// Builds Embree's tree (intersect.cpp). The mesh must be closed.
+BuiltMesh build_mesh(const TriangleMesh& mesh);
+
+}  // namespace translucube

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "renderer/sampler.h"
+#include "renderer/vec.h"
+
+namespace translucube {
+
+/// Isotropic GGX slopes with Smith masking (Walter et al. 2007, "Microfacet Models for Refraction
+/// through Rough Surfaces"). Directions are local, z the macroscopic normal, on wo's side.
+struct Ggx {
+  double alpha = 0.1;  ///< (0, 1]
+
+  /// Density of normals per projected macroscopic area (Walter 2007, eq. 33).
+  double d(Vec3 m) const {
+    if (m.z <= 0) return 0;
+    const double a2 = alpha * alpha;
+    const double q = (m.x * m.x + m.y * m.y) / a2 + m.z * m.z;
+    return 1 / (std::numbers::pi * a2 * q * q);
+  }
+
+  /// Smith's Lambda (Walter 2007, eq. 34 as G1 = 1 / (1 + Lambda)); even in w.z.
+  double lambda(Vec3 w) const {
+    const double tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
+    const double x = alpha * alpha * tan2;
+    // (sqrt(1 + x) - 1) / 2 without cancellation.
+    return 0.5 * x / (1 + std::sqrt(1 + x));
+  }
+  double g1(Vec3 w) const { return 1 / (1 + lambda(w)); }
+
+  /// Density of the normals that wo sees, per solid angle (Heitz 2014, eq. 2).
+  double visible_d(Vec3 wo, Vec3 m) const {
+    const double cos_m = dot(wo, m);
+    return cos_m <= 0 ? 0 : d(m) * g1(wo) * cos_m / wo.z;
+  }
+
+  /// A visible normal, wo.z > 0 (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with
+  /// Spherical Caps").
+  Vec3 sample_visible(Vec3 wo, Sample2 u) const {
+    const Vec3 w = normalize({alpha * wo.x, alpha * wo.y, wo.z});
+    const double phi = 2 * std::numbers::pi * u.u;
+    const double z = (1 - u.v) * (1 + w.z) - w.z;
+    const double r = std::sqrt(std::fmax(0.0, 1 - z * z));
+    const Vec3 h = Vec3{r * std::cos(phi), r * std::sin(phi), z} + w;
+    return normalize({alpha * h.x, alpha * h.y, std::fmax(h.z, 1e-300)});
+  }
+};
+
+}  // namespace translucube

@@ -1,0 +1,201 @@
+#include "renderer/render.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <thread>
+
+#include "renderer/deadline.h"
+#include "renderer/scene_data.h"
+#include "renderer/transport.h"
+
+namespace translucube {
+namespace {
+
+constexpr int tile_size = 16;
+/// Camera samples of a pixel that are in flight at once: a tile's paths then fit the L2 cache.
+constexpr std::uint32_t samples_at_once = 4;
+
+double thread_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+int thread_count(int asked) {
+  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void store(const Tile& tile, PassFilm& film) {
+  const std::size_t lane_size = std::size_t(3) * film.width * film.height;
+  for (int lane = 0; lane < film.lanes; ++lane)
+    for (int y = 0; y < tile.height; ++y) {
+      const float* from = &tile.sum[std::size_t(3) * tile.width * (lane * tile.height + y)];
+      float* to = &film.sum[lane * lane_size +
+                            std::size_t(3) * ((tile.y0 + y) * std::size_t(film.width) + tile.x0)];
+      std::copy(from, from + std::size_t(3) * tile.width, to);
+    }
+}
+
+}  // namespace
+
+std::optional<Pass> plan_pass(std::uint32_t index, std::uint64_t pixels,
+                              std::optional<std::uint32_t> total_samples) {
+  // A pass is a quarter of what lies before it, a power of two: enough replicates to tell the error
+  // by, few enough to merge and store, and long enough for low-discrepancy points to pay. Bounded
+  // by work, so that checkpoints stay close together.
+  const auto largest = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
+      std::bit_floor((std::uint64_t{1} << 22) / std::max<std::uint64_t>(pixels, 1)), 4, 4096));
+  std::uint32_t first = 0, count = 4;
+  for (std::uint32_t i = 0;; ++i) {
+    count = std::clamp(std::bit_floor(std::max(first / 4, 1u)), 4u, largest);
+    if (total_samples) {
+      if (first >= *total_samples) return {};
+      count = std::min(count, *total_samples - first);
+    }
+    if (i == index) return Pass{index, first, count};
+    first += count;
+  }
+}
+
+std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int threads,
+                                   std::stop_token stop) {
+  PassFilm film;
+  film.width = scene.width;
+  film.height = scene.height;
+  film.lanes = static_cast<int>(scene.lanes.size());
+  film.pass = pass;
+  film.sum.resize(std::size_t(3) * film.width * film.height * film.lanes);
+  const int columns = (film.width + tile_size - 1) / tile_size,
+            rows = (film.height + tile_size - 1) / tile_size;
+  std::vector<TraceCounters> counters(std::size_t(columns) * rows);
+  std::atomic<int> next{0};
+  std::atomic<double> cpu_seconds{0};
+  const auto work = [&] {
+    const double start = thread_cpu_seconds();
+    for (int i = next++; i < columns * rows && !stop.stop_requested(); i = next++) {
+      Tile tile;
+      tile.x0 = i % columns * tile_size;
+      tile.y0 = i / columns * tile_size;
+      tile.width = std::min(tile_size, film.width - tile.x0);
+      tile.height = std::min(tile_size, film.height - tile.y0);
+      tile.sum.assign(std::size_t(3) * tile.width * tile.height * film.lanes, 0.0f);
+      for (std::uint32_t s = 0; s < pass.count && !stop.stop_requested(); s += samples_at_once)
+        trace_tile(scene, pass.index, s, std::min(samples_at_once, pass.count - s), tile);
+      store(tile, film);
+      counters[i] = tile.counters;
+    }
+    cpu_seconds += thread_cpu_seconds() - start;
+  };
+  {
+    std::vector<std::jthread> helpers;
+    const int workers = std::min(thread_count(threads), columns * rows);
+    for (int i = 1; i < workers; ++i) helpers.emplace_back(work);
+    work();
+  }
+  if (stop.stop_requested()) return {};
+  for (const TraceCounters& c : counters) film.counters += c;
+  film.cpu_seconds = cpu_seconds;
+  return film;
+}
+
+bool meets(const Quality& quality, const Film& film, double seconds) {
+  struct Meets {
+    const Film& film;
+    double seconds;
+    bool operator()(const SampleTarget& t) const { return film.samples >= t.samples; }
+    bool operator()(const ErrorTarget& t) const { return relative_error(film) <= t.relative_error; }
+    bool operator()(const TimeTarget& t) const { return film.passes > 0 && seconds >= t.seconds; }
+  };
+  return std::visit(Meets{film, seconds}, quality);
+}
+
+Progress progress_of(const Film& film, const Quality& quality, double seconds) {
+  Progress progress;
+  progress.passes = film.passes;
+  progress.samples = film.samples;
+  progress.relative_error = relative_error(film);
+  progress.seconds = seconds;
+  if (const auto* target = std::get_if<SampleTarget>(&quality)) {
+    progress.total_samples = target->samples;
+    if (film.samples > 0)
+      progress.eta_seconds = seconds * (double(target->samples) / film.samples - 1);
+  } else if (const auto* error = std::get_if<ErrorTarget>(&quality)) {
+    // The error falls with the square root of the samples.
+    const double ratio = progress.relative_error / error->relative_error;
+    if (std::isfinite(ratio)) progress.eta_seconds = seconds * std::max(0.0, ratio * ratio - 1);
+  } else {
+    progress.eta_seconds = std::max(0.0, std::get<TimeTarget>(quality).seconds - seconds);
+  }
+  return progress;
+}
+
+RenderStats stats_of(const Scene& scene, const Film& film, double seconds, int threads) {
+  RenderStats stats;
+  stats.samples = film.samples;
+  stats.seconds = seconds;
+  stats.cpu_seconds = film.cpu_seconds;
+  stats.threads = thread_count(threads);
+  stats.relative_error = relative_error(film);
+  stats.transport = transport_name(scene);
+  stats.nan_samples = film.counters.nan_samples;
+  stats.truncated_energy =
+      film.counters.camera_samples > 0
+          ? film.counters.truncated_energy / static_cast<double>(film.counters.camera_samples)
+          : 0;
+  return stats;
+}
+
+RenderResult render(const Scene& scene, const Quality& quality, int threads, std::stop_token stop,
+                    const std::function<void(const Progress&)>& on_progress) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  RenderResult result;
+  result.film = Film(scene.width, scene.height, static_cast<int>(scene.lanes.size()));
+  const auto pixels = std::uint64_t(scene.width) * std::uint64_t(scene.height);
+  std::optional<std::uint32_t> total;
+  if (const auto* target = std::get_if<SampleTarget>(&quality)) total = target->samples;
+  const auto* budget = std::get_if<TimeTarget>(&quality);
+  while (!meets(quality, result.film, seconds())) {
+    const std::optional<Pass> pass = plan_pass(result.film.passes, pixels, total);
+    if (!pass) break;
+    // A pass that overruns the time is given up; the first one always ends.
+    std::stop_source pass_stop;
+    const std::stop_callback forward(stop, [&] { pass_stop.request_stop(); });
+    std::optional<Deadline> deadline;
+    if (budget && result.film.passes > 0) deadline.emplace(pass_stop, budget->seconds - seconds());
+    const std::optional<PassFilm> film = trace_pass(scene, *pass, threads, pass_stop.get_token());
+    if (!film) {
+      result.stopped = stop.stop_requested();
+      break;
+    }
+    merge(result.film, *film);
+    if (on_progress) on_progress(progress_of(result.film, quality, seconds()));
+  }
+  result.stats = stats_of(scene, result.film, seconds(), threads);
+  return result;
+}
+
+std::string explain_sample(const Scene& scene, int x, int y, std::uint32_t sample) {
+  const auto pixels = std::uint64_t(scene.width) * std::uint64_t(scene.height);
+  Pass pass;
+  for (std::uint32_t i = 0; pass.first_sample + pass.count <= sample; ++i)
+    pass = *plan_pass(i, pixels);
+  Tile tile;
+  tile.x0 = x;
+  tile.y0 = y;
+  tile.width = tile.height = 1;
+  tile.sum.assign(3 * scene.lanes.size(), 0.0f);
+  std::string log;
+  trace_tile(scene, pass.index, sample - pass.first_sample, 1, tile, &log);
+  char line[128];
+  std::snprintf(line, sizeof line, "radiance (%.9g, %.9g, %.9g)\n", tile.sum[0], tile.sum[1],
+                tile.sum[2]);
+  return log + line;
+}
+
+}  // namespace translucube

@@ -1,0 +1,106 @@
+#include <numbers>
+
+#include "renderer/image_io.h"
+#include "renderer/mesh.h"
+#include "renderer/render.h"
+#include "renderer/scene_data.h"
+
+namespace translucube {
+namespace {
+
+struct PlacedShape {
+  Shape shape;
+  Vec3 center_mm;
+  double unit_mm;
+};
+
+PlacedShape make_shape(const SphereObject& sphere) { return {Sphere{}, {}, sphere.radius_mm}; }
+
+PlacedShape make_shape(const MeshObject& object) {
+  try {
+    TriangleMesh mesh = read_mesh(object.file);
+    close_mesh(mesh);
+    const BuiltMesh built = build_mesh(mesh);
+    return {built.mesh, built.center, built.radius};
+  } catch (const MeshError& error) {
+    throw SceneError(SceneError::Part::object, error.what());
+  }
+}
+
+Environment make_environment(const EnvironmentSpec& spec) {
+  if (const auto* constant = std::get_if<ConstantEnvironmentSpec>(&spec.source))
+    return UniformEnvironment{constant->radiance * static_cast<float>(spec.scale)};
+  try {
+    const Image image = read_image(std::get<ImageEnvironmentSpec>(spec.source).file);
+    for (const float v : image.pixels)
+      if (v < 0) throw ImageError("the environment has negative radiance");
+    return ImageEnvironment(image, spec.rotation_deg * std::numbers::pi / 180, spec.scale);
+  } catch (const ImageError& error) {
+    throw SceneError(SceneError::Part::environment, error.what());
+  }
+}
+
+}  // namespace
+
+Interface make_interface(const Material& material) {
+  // Without a step of the index there is no interface, however rough.
+  if (material.coefficients.alpha == 0 || material.ior == 1) return SmoothInterface{material.ior};
+  return RoughInterface{material.ior, Ggx{material.coefficients.alpha}};
+}
+
+Interior make_interior(const Material& material, double unit_mm) {
+  // Where both are infinite, absorption wins: the body is black.
+  if (std::isinf(material.coefficients.sigma_a_peak)) return BlackInterior{};
+  if (std::isinf(material.coefficients.sigma_s))
+    return LambertianInterior{std::visit([](const auto& i) { return InterfacedLambertian(i); },
+                                         make_interface(material))};
+  if (material.coefficients.sigma_s == 0) return ClearInterior{};
+  return ScatteringInterior{Medium{material.coefficients.sigma_s * unit_mm, material.g}};
+}
+
+void check_mesh(const std::filesystem::path& file) {
+  try {
+    TriangleMesh mesh = read_mesh(file);
+    close_mesh(mesh);
+  } catch (const MeshError& error) {
+    throw SceneError(SceneError::Part::object, error.what());
+  }
+}
+
+std::shared_ptr<const Scene> build_scene(const SceneSpec& spec) {
+  const PlacedShape placed = std::visit([](const auto& o) { return make_shape(o); }, spec.object);
+  const double unit = placed.unit_mm;
+  const auto to_body = [&](Vec3 p) { return (p - placed.center_mm) * (1 / unit); };
+  auto scene = std::make_shared<Scene>();
+  scene->width = spec.width;
+  scene->height = spec.height;
+  scene->seed = spec.seed;
+  scene->unit_mm = unit;
+  scene->shape = placed.shape;
+  scene->interface = make_interface(spec.material);
+  scene->interior = make_interior(spec.material, unit);
+  scene->environment = make_environment(spec.environment);
+  scene->camera = Camera(to_body(spec.camera.position_mm), to_body(spec.camera.target_mm),
+                         spec.camera.up, spec.camera.vfov_deg, spec.width, spec.height);
+  scene->camera_inside =
+      std::visit([&](const auto& s) { return s.inside(scene->camera.position); }, scene->shape);
+  const bool opaque = std::holds_alternative<BlackInterior>(scene->interior) ||
+                      std::holds_alternative<LambertianInterior>(scene->interior);
+  if (scene->camera_inside && opaque)
+    throw SceneError(SceneError::Part::camera, "the camera is inside an opaque body");
+  // Light that only touches an opaque body has no length inside it.
+  scene->lanes = {opaque ? Lane{ClearLane{}} : make_lane(spec.material, unit)};
+  return scene;
+}
+
+std::string transport_name(const Scene& scene) {
+  struct Name {
+    std::string operator()(const BlackInterior&) const { return "interface"; }
+    std::string operator()(const ClearInterior&) const { return "clear"; }
+    std::string operator()(const ScatteringInterior&) const { return "walk"; }
+    std::string operator()(const LambertianInterior&) const { return "interfaced-lambertian"; }
+  };
+  return std::visit(Name{}, scene.interior);
+}
+
+}  // namespace translucube

@@ -1,0 +1,52 @@
+#pragma once
+
+// What the transport reads: the scene with its resources loaded and everything that can be decided
+// once decided. Lengths are in the body's unit.
+
+#include <array>
+#include <variant>
+#include <vector>
+
+#include "renderer/absorption.h"
+#include "renderer/bsdf.h"
+#include "renderer/camera.h"
+#include "renderer/environment.h"
+#include "renderer/lambertian.h"
+#include "renderer/medium.h"
+#include "renderer/scene.h"
+#include "renderer/shapes.h"
+
+namespace translucube {
+
+/// What lies behind the interface, and so which transport runs.
+struct BlackInterior {};  ///< a = 1: nothing comes back
+struct ClearInterior {};  ///< s = 0: interface events only
+struct ScatteringInterior {
+  Medium medium;  ///< 0 < s < 1: random walk
+};
+struct LambertianInterior {
+  InterfacedLambertian base;  ///< s = 1: closed form
+};
+
+using Shape = std::variant<Sphere, Slab, Mesh>;
+using Interface = std::variant<SmoothInterface, RoughInterface>;
+using Interior = std::variant<BlackInterior, ClearInterior, ScatteringInterior, LambertianInterior>;
+
+struct Scene {
+  int width = 0, height = 0;
+  std::uint64_t seed = 0;
+  double unit_mm = 1;  ///< the body's unit of length
+  Shape shape;
+  Interface interface;
+  Interior interior;
+  Environment environment;
+  Camera camera;
+  bool camera_inside = false;
+  std::vector<Lane> lanes;
+};
+
+/// The optics of a material for a body with this unit.
+Interface make_interface(const Material& material);
+Interior make_interior(const Material& material, double unit_mm);
+
+}  // namespace translucube

@@ -1,0 +1,438 @@
+// Light transport in the cube, backwards from the camera, in stages:
+//
+//   emit -> enter -> walk -> boundary -> (connect) -> collect
+//
+// Each stage is one loop over a queue of paths. What is carried is an achromatic weight and the
+// length travelled inside the body; absorption comes with the film's lanes. At a smooth boundary
+// both branches are followed; the light that no particle deflects is enumerated, not sampled, and
+// one scattered path stands for all that is deflected on the way (a reservoir of one: Chao 1982).
+// Paths of small weight are played out by Russian roulette, so that the branches in flight stay
+// bounded.
+
+#include "renderer/transport.h"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <type_traits>
+
+namespace translucube {
+namespace {
+
+/// Below this weight a path survives with probability weight / threshold.
+constexpr double roulette_weight = 1.0 / 8;
+/// Boundary events after which a path is given up and its weight counted as truncated energy: only
+/// light that is trapped for good (a camera inside a clear body) gets there.
+constexpr std::uint32_t event_cap = 20'000;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Path {
+  Vec3 p, d;          ///< position, direction of travel
+  Vec3 n;             ///< outward normal, at the boundary
+  double length = 0;  ///< inside the body so far
+  double weight = 1;
+  double pdf = 0;  ///< of d, where connect() had a chance to find it too; 0: none had
+  std::uint32_t pixel = 0, events = 0;
+  PathSampler sampler;
+};
+
+template <class Shape, class Interface, class Interior>
+class Tracer {
+  static constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
+  static constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
+  static constexpr bool lambertian = std::is_same_v<Interior, LambertianInterior>;
+  /// Whether light goes on inside the body.
+  static constexpr bool open = scattering || std::is_same_v<Interior, ClearInterior>;
+
+ public:
+  Tracer(const Scene& scene, const Shape& shape, const Interface& interface,
+         const Interior& interior, Tile& tile, std::string* log)
+      : scene_(scene),
+        shape_(shape),
+        interface_(interface),
+        interior_(interior),
+        tile_(tile),
+        log_(log) {}
+
+  void run(std::uint32_t pass_index, std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t s = first; s < first + count; ++s) emit(pass_index, s);
+    while (!arriving_.empty() || !walking_.empty()) {
+      enter();
+      walk();
+      boundary();
+    }
+  }
+
+ private:
+  // ---- stages
+
+  void emit(std::uint32_t pass_index, std::uint32_t sample) {
+    for (int y = 0; y < tile_.height; ++y)
+      for (int x = 0; x < tile_.width; ++x) {
+        const int px = tile_.x0 + x, py = tile_.y0 + y;
+        const std::uint64_t pixel_key =
+            hash_combine(hash_combine(scene_.seed, pass_index),
+                         std::uint64_t(py) * std::uint64_t(scene_.width) + std::uint64_t(px));
+        Path path;
+        path.sampler = PathSampler(pixel_key, sample);
+        path.pixel = static_cast<std::uint32_t>(y * tile_.width + x);
+        const Sample2 u = path.sampler.next2();
+        path.p = scene_.camera.position;
+        path.d = scene_.camera.direction(px + u.u, py + u.v);
+        note("emit", path);
+        ++tile_.counters.camera_samples;
+        if (scene_.camera_inside)
+          inward(path);
+        else
+          arriving_.push_back(path);
+      }
+  }
+
+  /// Rays outside: to the environment, or through the interface into the body.
+  void enter() {
+    for (std::size_t i = 0; i < arriving_.size(); ++i) {
+      Path path = arriving_[i];
+      Hit hit;
+      if (!shape_.enter(path.p, path.d, hit)) {
+        escape(path);
+        continue;
+      }
+      path.p = hit.p;
+      path.n = hit.n;
+      note("enter", path);
+      if (!count_event(path)) continue;
+      if constexpr (smooth)
+        enter_smooth(path);
+      else
+        enter_rough(path);
+    }
+    arriving_.clear();
+  }
+
+  /// Flights inside until the boundary.
+  void walk() {
+    if constexpr (open) {
+      for (Path& path : walking_) {
+        Hit hit;
+        if constexpr (scattering) {
+          const Medium& medium = interior_.medium;
+          Rng& rng = path.sampler.rng();
+          while (true) {
+            const double flight = medium.sample_flight(rng);
+            ++tile_.counters.flights;
+            if (shape_.exit(path.p, path.d, flight, hit)) break;
+            path.p = path.p + flight * path.d;
+            path.length += flight;
+            if (strayed(path)) break;
+            path.d = medium.scatter(path.d, rng);
+          }
+          if (strayed(path)) {
+            give_up(path);
+            continue;
+          }
+        } else if (!shape_.exit(path.p, path.d, infinity, hit)) {
+          give_up(path);
+          continue;
+        }
+        arrive_inside(path, hit);
+        leaving_.push_back(path);
+      }
+    }
+    walking_.clear();
+  }
+
+  /// Paths inside at the boundary: what leaves is collected with its weight, what stays walks on.
+  void boundary() {
+    if constexpr (open) {
+      for (Path& path : leaving_) {
+        if (!count_event(path)) continue;
+        if constexpr (smooth)
+          leave_smooth(path);
+        else
+          leave_rough(path);
+        if (survives(path)) walking_.push_back(path);
+      }
+    }
+    leaving_.clear();
+  }
+
+  // ---- the smooth interface
+
+  void enter_smooth(Path path) {
+    const Vec3 wo = -path.d;
+    const double reflectance = fresnel(dot(wo, path.n), interface_.ior);
+    if constexpr (lambertian) enter_lambertian(path, {});
+    if (reflectance > 0) leave(path, reflect(wo, path.n), path.weight * reflectance, 0);
+    if constexpr (open) {
+      if (reflectance == 1) return;
+      path.d = *refract(wo, path.n, interface_.ior);
+      path.weight *= 1 - reflectance;
+      path.pdf = 0;
+      if (survives(path)) follow_unscattered(path);
+    }
+  }
+
+  /// The light that crosses the body unscattered, all of it; what is scattered on the way goes to
+  /// walk() as one path.
+  void follow_unscattered(Path path) {
+    Path scattered;
+    double scattered_weight = 0;
+    Rng& rng = path.sampler.rng();
+    while (true) {
+      Hit hit;
+      if (!shape_.exit(path.p, path.d, infinity, hit)) {
+        give_up(path);
+        break;
+      }
+      if constexpr (scattering) {
+        const double sigma_s = interior_.medium.sigma_s;
+        const double deflected = -std::expm1(-sigma_s * hit.t);
+        const double weight = path.weight * deflected;
+        scattered_weight += weight;
+        ++tile_.counters.flights;
+        if (rng.uniform() * scattered_weight < weight) {
+          const double s = -std::log1p(-rng.uniform() * deflected) / sigma_s;
+          scattered = path;
+          scattered.p = path.p + std::fmin(s, hit.t) * path.d;
+          scattered.length += std::fmin(s, hit.t);
+        }
+        path.weight *= std::exp(-sigma_s * hit.t);
+        if (!survives(path)) break;
+      }
+      arrive_inside(path, hit);
+      if (!count_event(path)) break;
+      leave_smooth(path);
+      if (!survives(path)) break;
+    }
+    if constexpr (scattering) {
+      if (scattered_weight <= 0) return;
+      scattered.weight = scattered_weight;
+      scattered.sampler = path.sampler.split();
+      note("scatter", scattered);
+      scattered.d = interior_.medium.scatter(scattered.d, scattered.sampler.rng());
+      walking_.push_back(scattered);
+    }
+  }
+
+  /// At the boundary from inside: sends out the transmitted share, keeps the reflected one.
+  void leave_smooth(Path& path) {
+    const double reflectance = fresnel(dot(path.d, path.n), 1 / interface_.ior);
+    if (reflectance < 1) {
+      const Vec3 out = *refract(-path.d, -path.n, 1 / interface_.ior);
+      leave(path, out, path.weight * (1 - reflectance), 0);
+    }
+    path.weight *= reflectance;
+    path.d = reflect(-path.d, path.n);
+  }
+
+  // ---- the rough interface
+
+  void enter_rough(Path path) {
+    const Frame frame(path.n);
+    const Vec3 wo = frame.to_local(-path.d);
+    if (wo.z <= 0) return;
+    const RoughSample sample =
+        sample_rough(interface_.microfacets, interface_.ior, wo, path.sampler.next2());
+    if constexpr (lambertian) {
+      enter_lambertian(path, sample.reflected);
+      return;
+    }
+    connect(path, frame, [&](Vec3 wi) {
+      return rough_reflection(interface_.microfacets, interface_.ior, wo, wi);
+    });
+    if (sample.reflected)
+      leave(path, frame.to_world(sample.reflected->wi), path.weight * sample.reflected->weight,
+            sample.reflected->pdf);
+    if constexpr (open) {
+      if (!sample.transmitted) return;
+      path.d = frame.to_world(sample.transmitted->wi);
+      path.weight *= sample.transmitted->weight;
+      path.pdf = 0;
+      if (survives(path)) walking_.push_back(path);
+    }
+  }
+
+  void leave_rough(Path& path) {
+    const Frame frame(-path.n);
+    const Vec3 wo = frame.to_local(-path.d);
+    const double eta = 1 / interface_.ior;
+    if (wo.z <= 0) {
+      path.weight = 0;
+      return;
+    }
+    connect(path, frame,
+            [&](Vec3 wi) { return rough_transmission(interface_.microfacets, eta, wo, wi); });
+    const RoughSample sample = sample_rough(interface_.microfacets, eta, wo, path.sampler.next2());
+    if (sample.transmitted)
+      leave(path, frame.to_world(sample.transmitted->wi), path.weight * sample.transmitted->weight,
+            sample.transmitted->pdf);
+    if (sample.reflected) {
+      path.weight *= sample.reflected->weight;
+      path.d = frame.to_world(sample.reflected->wi);
+    } else {
+      path.weight = 0;
+    }
+  }
+
+  // ---- the infinitely dense body
+
+  /// Reflection at the interface and by the background, which share their directions' densities.
+  void enter_lambertian(Path& path, const std::optional<LobeSample>& reflected) {
+    const Frame frame(path.n);
+    const Vec3 wo = frame.to_local(-path.d);
+    const auto evaluate = [&](Vec3 wi) {
+      LobeValue value = interior_.base.evaluate(wo, wi);
+      if constexpr (!smooth) {
+        const LobeValue r = rough_reflection(interface_.microfacets, interface_.ior, wo, wi);
+        value = {value.f_cos + r.f_cos, value.pdf + r.pdf};
+      }
+      return value;
+    };
+    connect(path, frame, evaluate);
+    const auto follow = [&](Vec3 wi) {
+      const LobeValue value = evaluate(wi);
+      if (value.f_cos > 0)
+        leave(path, frame.to_world(wi), path.weight * value.f_cos / value.pdf, value.pdf);
+    };
+    follow(InterfacedLambertian::sample(path.sampler.next2()));
+    if (reflected) follow(reflected->wi);
+  }
+
+  // ---- between stages
+
+  /// Next-event estimation at a rough exit: a direction of the environment, weighted by the balance
+  /// heuristic (Veach 1995) against those that the interface samples itself.
+  template <class Evaluate>
+  void connect(Path& path, const Frame& frame, Evaluate&& evaluate) {
+    const EnvironmentSample light = std::visit(
+        [&](const auto& e) { return e.sample(path.sampler.next2()); }, scene_.environment);
+    ++tile_.counters.connections;
+    const LobeValue value = evaluate(frame.to_local(light.direction));
+    if (value.f_cos <= 0) return;
+    if constexpr (!Shape::convex) {
+      Hit hit;
+      if (shape_.enter(path.p, light.direction, hit)) return;
+    }
+    note("connect", path);
+    collect(path, light.value.radiance, path.weight * value.f_cos / (light.value.pdf + value.pdf));
+  }
+
+  /// Into the body, from a camera inside it.
+  void inward(Path& path) {
+    if constexpr (open) {
+      if constexpr (smooth)
+        follow_unscattered(path);
+      else
+        walking_.push_back(path);
+    }
+  }
+
+  /// Out of the body: to the environment, or where the body may be hit again, back to enter().
+  void leave(Path& from, Vec3 direction, double weight, double pdf) {
+    Path path = from;
+    path.d = direction;
+    path.weight = weight;
+    path.pdf = pdf;
+    if constexpr (Shape::convex) {
+      escape(path);
+    } else {
+      path.sampler = from.sampler.split();
+      if (survives(path)) arriving_.push_back(path);
+    }
+  }
+
+  void escape(const Path& path) {
+    note("escape", path);
+    std::visit(
+        [&](const auto& environment) {
+          if (path.pdf > 0) {
+            const EnvironmentValue light = environment.value_from(path.d);
+            collect(path, light.radiance, path.weight * path.pdf / (path.pdf + light.pdf));
+          } else {
+            collect(path, environment.radiance_from(path.d), path.weight);
+          }
+        },
+        scene_.environment);
+  }
+
+  void collect(const Path& path, Rgb radiance, double weight) {
+    const Rgb brought = radiance * static_cast<float>(weight);
+    const std::size_t stride = std::size_t(3) * tile_.width * tile_.height;
+    float* pixel = &tile_.sum[std::size_t(3) * path.pixel];
+    for (const Lane& lane : scene_.lanes) {
+      const Rgb developed =
+          std::visit([&](const auto& l) { return l.apply(brought, path.length); }, lane);
+      if (!std::isfinite(developed.r + developed.g + developed.b)) ++tile_.counters.nan_samples;
+      pixel[0] += developed.r;
+      pixel[1] += developed.g;
+      pixel[2] += developed.b;
+      pixel += stride;
+    }
+  }
+
+  void arrive_inside(Path& path, const Hit& hit) {
+    path.length += hit.t;
+    path.p = hit.p;
+    path.n = hit.n;
+    note("boundary", path);
+  }
+
+  /// Unbiased: the weight lost to those that end is given to those that survive.
+  static bool survives(Path& path) {
+    if (path.weight >= roulette_weight) return true;
+    if (path.sampler.rng().uniform() * roulette_weight >= path.weight) return false;
+    path.weight = roulette_weight;
+    return true;
+  }
+
+  bool count_event(Path& path) {
+    ++tile_.counters.boundary_events;
+    if (++path.events < event_cap) return true;
+    give_up(path);
+    return false;
+  }
+
+  void give_up(const Path& path) {
+    note("give up", path);
+    tile_.counters.truncated_energy += path.weight;
+  }
+
+  /// A path that slipped out of a mesh by rounding would walk for ever.
+  static bool strayed(const Path& path) {
+    if constexpr (std::is_same_v<Shape, Mesh>) return length_squared(path.p) > 1.01;
+    return false;
+  }
+
+  void note(const char* event, const Path& path) {
+    if (log_ == nullptr) return;
+    char line[256];
+    std::snprintf(
+        line, sizeof line,
+        "%-9s p (%.9g, %.9g, %.9g) d (%.6f, %.6f, %.6f) length %.9g weight %.9g pdf %.6g\n", event,
+        path.p.x, path.p.y, path.p.z, path.d.x, path.d.y, path.d.z, path.length, path.weight,
+        path.pdf);
+    *log_ += line;
+  }
+
+  const Scene& scene_;
+  const Shape& shape_;
+  const Interface& interface_;
+  const Interior& interior_;
+  Tile& tile_;
+  std::string* log_;
+  std::vector<Path> arriving_, walking_, leaving_;
+};
+
+}  // namespace
+
+void trace_tile(const Scene& scene, std::uint32_t pass_index, std::uint32_t first,
+                std::uint32_t count, Tile& tile, std::string* log) {
+  std::visit(
+      [&](const auto& shape, const auto& interface, const auto& interior) {
+        Tracer(scene, shape, interface, interior, tile, log).run(pass_index, first, count);
+      },
+      scene.shape, scene.interface, scene.interior);
+}
+
+}  // namespace translucube

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "renderer/film.h"
+#include "renderer/scene_data.h"
+
+namespace translucube {
+
+/// A rectangle of pixels and what its paths bring; owned by one thread at a time.
+struct Tile {
+  int x0 = 0, y0 = 0, width = 0, height = 0;
+  std::vector<float> sum;  ///< lanes x height x width x 3
+  TraceCounters counters;
+};
+
+/// Adds camera samples [first, first + count) of a pass to every pixel of the tile. `log`, where
+/// given, receives a line for every event.
+void trace_tile(const Scene& scene, std::uint32_t pass_index, std::uint32_t first,
+                std::uint32_t count, Tile& tile, std::string* log = nullptr);
+
+}  // namespace translucube
