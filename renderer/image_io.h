@@ -39,8 +39,9 @@ ImageMetadata read_metadata(const std::filesystem::path& file);
 
 /// Writes scene-linear float (EXR: 32-bit float, with chromaticities of the colorspace) or display
 /// values (PNG, TIFF: 16 bit; JPEG: 8 bit, quality 95), with the metadata in the header (PNG text
-/// "Description"/EXIF where the format has nothing better). Throws ImageError; an incomplete file
-/// may stay behind: write to a temporary name.
+/// Description, TIFF ImageDescription, EXIF). TIFF and JPEG have no room for a request of more than
+/// 60,000 bytes and go without it. The same picture gives the same bytes. Throws ImageError; an
+/// incomplete file may stay behind: write to a temporary name.
 void write_image(const std::filesystem::path& file, const Image& image, ImageFormat format,
                  const ImageMetadata& metadata);
 
