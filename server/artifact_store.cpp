@@ -149,6 +149,7 @@ Film ArtifactStore::read_film(const std::string& id, std::uint32_t pass_count) c
       const auto file = open(id, next->second);
       if (!file) break;
       const PassFilm pass = pass_film_from_bytes(file->read_all());
+      if (pass.pass.index != film.passes) break;
       if (film.passes == 0) film = Film(pass.width, pass.height, pass.lanes);
       merge(film, pass);
     }

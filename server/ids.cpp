@@ -40,6 +40,15 @@ std::string random_hex(int bytes) {
   return text;
 }
 
+std::string content_hash(std::string_view bytes) {
+  // FNV-1a, 64 bits (Fowler, Noll, Vo).
+  std::uint64_t value = 0xcbf29ce484222325u;
+  for (const char c : bytes) value = (value ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  std::string text;
+  for (int shift = 60; shift >= 0; shift -= 4) text += "0123456789abcdef"[value >> shift & 15];
+  return text;
+}
+
 bool is_id(std::string_view text) {
   // 26 x 5 = 130 bits: the first character carries only three.
   return text.size() == id_length && text[0] <= '7' &&

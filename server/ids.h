@@ -10,6 +10,9 @@ namespace translucube::server {
 /// Random bytes of the operating system, as hexadecimal digits.
 std::string random_hex(int bytes);
 
+/// A fingerprint of bytes for an entity tag, 16 hexadecimal digits.
+std::string content_hash(std::string_view bytes);
+
 /// True for the form of an id: 26 characters of Crockford's base 32. Nothing else of what a client
 /// sends may become part of a path.
 bool is_id(std::string_view text);

@@ -17,7 +17,7 @@ using Lock = std::lock_guard<std::mutex>;
 
 constexpr const char* select_job =
     "SELECT id, state, request, material, created_ms, started_ms, finished_ms, passes, samples, "
-    "total_samples, relative_error, seconds, eta_seconds, stats, error FROM jobs ";
+    "total_samples, relative_error, seconds, eta_seconds, stats, error, image FROM jobs ";
 
 std::string text(JobState state) { return std::string(api::name(state)); }
 
@@ -33,7 +33,8 @@ Job job_of(const Statement& row) {
           .finished_ms = row.optional_integer(6),
           .progress = {},
           .stats = row.optional_text(13),
-          .error = row.optional_text(14)};
+          .error = row.optional_text(14),
+          .image = row.optional_text(15)};
   job.progress.passes = static_cast<std::uint32_t>(row.integer(7));
   job.progress.samples = static_cast<std::uint32_t>(row.integer(8));
   if (!row.is_null(9)) job.progress.total_samples = static_cast<std::uint32_t>(row.integer(9));
@@ -258,7 +259,7 @@ bool JobStore::complete(const Task& task, const TaskResult& result, const Pass& 
 }
 
 bool JobStore::finish(const Task& task, const TaskResult& result, bool with_pass,
-                      const std::string& stats) {
+                      const std::string& stats, const std::string& image) {
   const Lock lock(writer_->mutex);
   Transaction transaction(*writer_);
   if (!holds(task)) return false;
@@ -269,7 +270,9 @@ bool JobStore::finish(const Task& task, const TaskResult& result, bool with_pass
         .run();
   delete_open_tasks(*writer_, task.job_id);
   store_progress(*writer_, task.job_id, result.progress);
-  Statement(*writer_, "UPDATE jobs SET stats = ? WHERE id = ?").bind(stats, task.job_id).run();
+  Statement(*writer_, "UPDATE jobs SET stats = ?, image = ? WHERE id = ?")
+      .bind(stats, image, task.job_id)
+      .run();
   if (!move(task.job_id, JobState::succeeded)) return false;
   transaction.commit();
   return true;

@@ -47,6 +47,7 @@ struct Job {
   std::optional<std::int64_t> started_ms, finished_ms;
   Progress progress;
   std::optional<std::string> stats, error;  ///< JSON texts
+  std::optional<std::string> image;         ///< name of the artifact, where it has succeeded
 };
 
 struct NewJob {
@@ -107,11 +108,13 @@ class JobStore {
   bool release(const Task& task, std::int64_t delay_ms = 0, bool counts_as_attempt = false);
   bool complete(const Task& task, const TaskResult& result, const Pass& next);
   /// The job has succeeded, with the task's pass, or without it where its time ran out.
-  bool finish(const Task& task, const TaskResult& result, bool with_pass, const std::string& stats);
+  bool finish(const Task& task, const TaskResult& result, bool with_pass, const std::string& stats,
+              const std::string& image);
   bool fail(const Task& task, const std::string& error);
 
   double traced_seconds(const std::string& id) const;  ///< sum over the finished tasks
   void check_writable();                               ///< throws StoreError
+  std::int64_t lease_ms() const { return options_.lease_ms; }
 
  private:
   std::optional<Job> find_on(sql::Connection& connection, const std::string& id) const;

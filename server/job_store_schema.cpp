@@ -27,7 +27,8 @@ CREATE TABLE jobs(
   seconds REAL NOT NULL DEFAULT 0,
   eta_seconds REAL,
   stats TEXT,
-  error TEXT);
+  error TEXT,
+  image TEXT);
 CREATE INDEX jobs_by_state ON jobs(state, id);
 CREATE TABLE tasks(
   job_id TEXT NOT NULL REFERENCES jobs(id) ON DELETE CASCADE,

@@ -1,0 +1,34 @@
+#pragma once
+
+// The calls of the service (design.md, section 3) over plain requests and answers.
+
+#include <atomic>
+#include <string>
+
+#include "api/catalog.h"
+#include "api/problem.h"
+#include "renderer/color.h"
+#include "server/http_message.h"
+#include "server/job_service.h"
+
+namespace translucube::server {
+
+struct Endpoints {
+  JobService& service;
+  const api::Catalog& catalog;
+  const ColorConfig& colors;
+  /// Each request that waits holds a thread: past this many, `Prefer: wait` is not honoured, so
+  /// that probes and statuses keep answering.
+  int max_waiting = 4;
+  std::atomic<int> waiting = 0;
+};
+
+/// The answer to any request; a failure of ours that is not foreseen passes as an exception.
+HttpResponse respond(Endpoints& endpoints, const HttpRequest& request);
+
+HttpResponse problem_response(const api::Problem& problem);
+/// For what the problem table has no word for, because HTTP itself does (RFC 9457, about:blank).
+HttpResponse plain_problem_response(int status, const std::string& title,
+                                    const std::string& detail);
+
+}  // namespace translucube::server

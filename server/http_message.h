@@ -1,0 +1,45 @@
+#pragma once
+
+// HTTP requests and answers as plain values, so that everything but the socket can be tried by
+// hand.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "server/file.h"
+
+namespace translucube::server {
+
+struct HttpRequest {
+  std::string method, path;  ///< the path is decoded, without the query
+  std::vector<std::pair<std::string, std::string>> query;
+  std::map<std::string, std::string> headers;  ///< by lower-case name; repeated ones joined by ", "
+  std::string body;
+
+  std::string_view header(const std::string& lower_case_name) const {
+    const auto it = headers.find(lower_case_name);
+    return it == headers.end() ? std::string_view() : std::string_view(it->second);
+  }
+};
+
+/// A part of a file, sent without reading it whole.
+struct FileSlice {
+  std::shared_ptr<const OpenFile> file;
+  std::uint64_t offset = 0, length = 0;
+};
+
+struct HttpResponse {
+  int status = 200;
+  std::vector<std::pair<std::string, std::string>> headers;
+  std::string content_type;
+  std::variant<std::string, FileSlice> body;
+};
+
+}  // namespace translucube::server

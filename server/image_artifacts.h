@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "api/problem.h"
+#include "renderer/color.h"
+#include "renderer/image_io.h"
+#include "server/artifact_store.h"
+#include "server/job_store.h"
+
+namespace translucube::server {
+
+/// Which form of a render's image. EXR is scene-linear in a colorspace; the others are made for a
+/// display and a view.
+struct ImageQuery {
+  ImageFormat format = ImageFormat::png;
+  std::optional<std::string> display, view, colorspace;
+};
+
+/// An image query with every default filled in.
+struct ImageForm {
+  ImageFormat format = ImageFormat::png;
+  std::string display, view;  ///< where the format is for a display
+  std::string colorspace;     ///< where it is scene-linear
+};
+
+/// Checks the query against what there is.
+std::variant<ImageForm, api::Problem> image_form(const ImageQuery& query,
+                                                 const std::vector<Display>& displays);
+
+/// Brings scene-linear Rec.709 into the form and writes it. Throws ImageError, ColorError.
+void write_form(const std::filesystem::path& file, Image image, const ImageForm& form,
+                const ColorConfig& colors, const std::string& canonical_request);
+
+/// True for the artifacts that image_artifact makes and can make again.
+bool is_derived(const std::string& artifact);
+
+struct ImageFile {
+  std::shared_ptr<const OpenFile> file;
+  std::string mime_type;
+  std::string etag;  ///< strong, with its quotes
+};
+
+/// The image of a succeeded job in the form asked for: made on the first demand, then kept beside
+/// the EXR. `conversion` is held while a picture is made. Throws FileError.
+std::variant<ImageFile, api::Problem> image_artifact(ArtifactStore& artifacts,
+                                                     const ColorConfig& colors, const Job& job,
+                                                     const ImageQuery& query,
+                                                     std::mutex& conversion);
+
+}  // namespace translucube::server

@@ -1,0 +1,79 @@
+#include "server/image_endpoint.h"
+
+#include "server/endpoints.h"
+#include "server/http_negotiation.h"
+
+namespace translucube::server {
+namespace {
+
+using api::Problem;
+using api::ProblemCode;
+
+constexpr const char* what_there_is =
+    "An image can be had as image/png, image/x-exr, image/tiff or image/jpeg "
+    "(?format=png, exr, tiff, jpeg).";
+
+HttpResponse with_headers_of(const ImageFile& image, HttpResponse response) {
+  response.headers.insert(response.headers.end(), {{"ETag", image.etag},
+                                                   {"Vary", "Accept"},
+                                                   {"Accept-Ranges", "bytes"},
+                                                   {"Cache-Control", "no-cache"}});
+  return response;
+}
+
+HttpResponse body_response(const HttpRequest& request, const ImageFile& image) {
+  const std::uint64_t size = image.file->size();
+  // A range of another version of the picture would not fit to what the client has (If-Range).
+  const std::string_view if_range = request.header("if-range");
+  const bool same_version = if_range.empty() || if_range == image.etag;
+  const auto range = requested_range(same_version ? request.header("range") : "", size);
+  const std::string of_size = '/' + std::to_string(size);
+
+  if (std::holds_alternative<UnsatisfiableRange>(range)) {
+    HttpResponse response = plain_problem_response(416, "Range Not Satisfiable",
+                                                   "The image ends before the range begins.");
+    response.headers.emplace_back("Content-Range", "bytes *" + of_size);
+    return response;
+  }
+  if (const auto* part = std::get_if<ByteRange>(&range)) {
+    return {206,
+            {{"Content-Range", "bytes " + std::to_string(part->first) + '-' +
+                                   std::to_string(part->first + part->length - 1) + of_size}},
+            image.mime_type,
+            FileSlice{image.file, part->first, part->length}};
+  }
+  return {200, {}, image.mime_type, FileSlice{image.file, 0, size}};
+}
+
+}  // namespace
+
+HttpResponse image_response(JobService& service, const HttpRequest& request,
+                            const std::string& id) {
+  ImageQuery query;
+  std::optional<ImageFormat> format;
+  bool format_given = false;
+  for (const auto& [name, value] : request.query) {
+    if (name == "format") {
+      format_given = true;
+      // Names only: image_format also takes file extensions.
+      for (const ImageFormat known :
+           {ImageFormat::png, ImageFormat::exr, ImageFormat::tiff, ImageFormat::jpeg})
+        if (value == translucube::name(known)) format = known;
+    }
+    if (name == "display") query.display = value;
+    if (name == "view") query.view = value;
+    if (name == "colorspace") query.colorspace = value;
+  }
+  if (!format_given) format = negotiate_image(request.header("accept"));
+  if (!format) return problem_response({ProblemCode::not_acceptable, what_there_is, {}});
+  query.format = *format;
+
+  const auto result = service.image(id, query);
+  if (const auto* problem = std::get_if<Problem>(&result)) return problem_response(*problem);
+  const auto& image = std::get<ImageFile>(result);
+  if (etag_matches(request.header("if-none-match"), image.etag))
+    return with_headers_of(image, {304, {}, {}, {}});
+  return with_headers_of(image, body_response(request, image));
+}
+
+}  // namespace translucube::server

@@ -1,0 +1,253 @@
+#include "server/render_task.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+#include <thread>
+
+#include "api/parse.h"
+#include "api/render_status.h"
+#include "renderer/image_io.h"
+#include "server/task_watch.h"
+
+namespace translucube::server {
+namespace {
+
+using std::chrono::steady_clock;
+
+// A render that ends the process this often (crash, out of memory) is given up.
+constexpr int max_attempts = 20;
+// A disk that refuses is tried again for about two minutes.
+constexpr int max_storage_attempts = 8;
+constexpr double seconds_between_checkpoints = 2;
+
+const char* pointer_of(SceneError::Part part) {
+  switch (part) {
+    case SceneError::Part::object:
+      return "/scene/object";
+    case SceneError::Part::environment:
+      return "/scene/environment";
+    case SceneError::Part::camera:
+      return "/scene/camera";
+  }
+  return "";
+}
+
+double seconds_since(steady_clock::time_point start) {
+  return std::chrono::duration<double>(steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+int TaskRunner::threads() const {
+  return workshop_.threads > 0 ? workshop_.threads
+                               : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+std::optional<std::uint32_t> TaskRunner::total_samples() const {
+  const auto* target = std::get_if<SampleTarget>(&hand_.quality);
+  return target ? std::optional(target->samples) : std::nullopt;
+}
+
+void TaskRunner::forget() { hand_ = {}; }
+
+void TaskRunner::run(const Task& task, std::stop_source work) {
+  try {
+    if (task.attempts > max_attempts) {
+      fail(task, {api::ProblemCode::internal,
+                  "The service ended too often while it worked on this render.",
+                  {}});
+      return;
+    }
+    run_or_throw(task, work);
+    return;
+  } catch (const StoreError& error) {
+    retry_later(task, error.what());
+  } catch (const FileError& error) {
+    retry_later(task, error.what());
+  } catch (const SceneError& error) {
+    fail(task, {api::ProblemCode::invalid_request,
+                "The scene cannot be built.",
+                {{pointer_of(error.part), error.what()}}});
+  } catch (const std::bad_alloc&) {
+    fail(task,
+         {api::ProblemCode::internal, "There is not enough memory for a render of this size.", {}});
+  } catch (const std::exception& error) {
+    spdlog::error("render {}: {}", task.job_id, error.what());
+    fail(task, {api::ProblemCode::internal, "The renderer failed on this request.", {}});
+  }
+  forget();
+}
+
+void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
+  const std::optional<Job> job = workshop_.store.find(task.job_id);
+  if (!job || job->state != api::JobState::running) {
+    // Canceled or removed between the claim and here.
+    if (!workshop_.store.release(task)) tidy(task.job_id);
+    return;
+  }
+  if (!take_in_hand(task, *job, work.get_token())) return;
+
+  std::optional<TaskWatch::TimePoint> deadline;
+  const auto start = steady_clock::now();
+  if (const auto* target = std::get_if<TimeTarget>(&hand_.quality); target && task.pass.index > 0)
+    deadline = start + std::chrono::duration_cast<steady_clock::duration>(
+                           std::chrono::duration<double>(target->seconds - hand_.seconds));
+
+  // A crash may have come between the partial film and its entry in the store.
+  std::optional<PassFilm> pass = workshop_.artifacts.read_pass(task.job_id, task.pass);
+  double task_seconds = pass ? pass->cpu_seconds / threads() : 0;
+  const bool stored = pass.has_value();
+  if (!pass) {
+    const TaskWatch watch(workshop_.store, task, work, deadline);
+    pass = workshop_.engine.trace(*hand_.scene, task.pass, workshop_.threads, work.get_token());
+    task_seconds = seconds_since(start);
+    if (!pass && watch.out_of_time()) {
+      finish(task, task_seconds, false);
+      return;
+    }
+  }
+  if (!pass) {
+    if (!workshop_.store.release(task)) tidy(task.job_id);
+    return;
+  }
+
+  if (!stored && task_seconds > seconds_between_checkpoints)
+    workshop_.artifacts.write_pass(task.job_id, *pass);
+  if (hand_.film.passes == 0) hand_.film = Film(pass->width, pass->height, pass->lanes);
+  merge(hand_.film, *pass);
+  if (hand_.film.counters.nan_samples > 0) {
+    fail(task, {api::ProblemCode::internal,
+                "The renderer made " + std::to_string(hand_.film.counters.nan_samples) +
+                    " samples that are not finite: a bug, please report this request.",
+                {}});
+    return;
+  }
+  const double seconds = hand_.seconds + task_seconds;
+  const std::optional<Pass> next = plan_pass(hand_.film.passes, hand_.pixels, total_samples());
+  if (!next || meets(hand_.quality, hand_.film, seconds)) {
+    pass.reset();
+    finish(task, task_seconds, true);
+    return;
+  }
+
+  if (!stored && task_seconds <= seconds_between_checkpoints)
+    workshop_.artifacts.write_pass(task.job_id, *pass);
+  pass.reset();
+  const TaskResult result{task_seconds, progress_of(hand_.film, hand_.quality, seconds)};
+  if (!workshop_.store.complete(task, result, *next)) {
+    forget();
+    tidy(task.job_id);
+    return;
+  }
+  hand_.seconds = seconds;
+  if (seconds - hand_.seconds_at_checkpoint >= seconds_between_checkpoints) {
+    workshop_.artifacts.write_film(task.job_id, hand_.film);
+    workshop_.artifacts.remove_films_before(task.job_id, hand_.film.passes);
+    hand_.seconds_at_checkpoint = seconds;
+  }
+}
+
+/// Makes the job's scene and its merged film of the passes before the task's. False where it ended
+/// the task instead.
+bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token stop) {
+  if (hand_.id == task.job_id && hand_.film.passes == task.pass.index) return true;
+  if (hand_.id != task.job_id) {
+    forget();
+    const auto parsed = api::parse_render_request(job.request, workshop_.catalog);
+    if (const auto* problem = std::get_if<api::Problem>(&parsed)) {
+      fail(task, *problem);  // what it names has gone since it was accepted
+      return false;
+    }
+    const auto& request = std::get<api::RenderRequest>(parsed);
+    hand_.scene = workshop_.engine.build(api::scene_spec(request, workshop_.catalog));
+    hand_.canonical = job.request;
+    hand_.quality = request.quality;
+    hand_.pixels = std::uint64_t(request.width) * std::uint64_t(request.height);
+    hand_.id = task.job_id;
+  }
+  hand_.film = workshop_.artifacts.read_film(task.job_id, task.pass.index);
+  hand_.seconds = workshop_.store.traced_seconds(task.job_id);
+  hand_.seconds_at_checkpoint = hand_.seconds;
+  // A checkpoint lost to a broken disk costs time, not the render.
+  while (hand_.film.passes < task.pass.index) {
+    spdlog::warn("render {}: pass {} is traced again", task.job_id, hand_.film.passes);
+    const std::optional<Pass> lost = plan_pass(hand_.film.passes, hand_.pixels, total_samples());
+    std::optional<PassFilm> pass;
+    if (lost) pass = workshop_.engine.trace(*hand_.scene, *lost, workshop_.threads, stop);
+    if (!pass) {
+      forget();
+      workshop_.store.release(task);
+      return false;
+    }
+    workshop_.artifacts.write_pass(task.job_id, *pass);
+    if (hand_.film.passes == 0) hand_.film = Film(pass->width, pass->height, pass->lanes);
+    merge(hand_.film, *pass);
+  }
+  return true;
+}
+
+void TaskRunner::finish(const Task& task, double task_seconds, bool with_pass) {
+  const double seconds = hand_.seconds + task_seconds;
+  // The name belongs to this claim: a late double of it cannot touch a picture that is served.
+  const std::string image = "image-" + std::to_string(task.pass.index) + '-' +
+                            std::to_string(task.fencing_token) + ".exr";
+  workshop_.artifacts.write(task.job_id, image, [&](const std::filesystem::path& file) {
+    try {
+      write_image(file, develop(hand_.film), ImageFormat::exr, {hand_.canonical, "lin_rec709"});
+    } catch (const ImageError& error) {
+      throw FileError(error.what());
+    }
+  });
+  const RenderStats stats = workshop_.engine.stats(*hand_.scene, hand_.film, seconds, threads());
+  const TaskResult result{task_seconds, progress_of(hand_.film, hand_.quality, seconds)};
+  if (workshop_.store.finish(task, result, with_pass, api::stats_json(stats), image)) {
+    workshop_.artifacts.remove_films(task.job_id);
+  } else {
+    workshop_.artifacts.remove(task.job_id, image);
+    tidy(task.job_id);
+  }
+  forget();
+}
+
+void TaskRunner::fail(const Task& task, const api::Problem& problem) {
+  spdlog::error("render {} failed: {}", task.job_id, problem.detail);
+  forget();
+  try {
+    workshop_.store.fail(task, api::to_json(problem));
+    tidy(task.job_id);
+  } catch (const std::exception& error) {
+    // The lease runs out and the task comes again.
+    spdlog::error("render {}: {}", task.job_id, error.what());
+  }
+}
+
+void TaskRunner::retry_later(const Task& task, const std::string& reason) {
+  if (task.attempts >= max_storage_attempts) {
+    spdlog::error("render {}: {}", task.job_id, reason);
+    fail(task, {api::ProblemCode::storage_failure, "The service could not store the render.", {}});
+    return;
+  }
+  const std::int64_t delay_ms = std::min<std::int64_t>(30'000, 500LL << task.attempts);
+  spdlog::warn("render {}: {}; again in {} ms", task.job_id, reason, delay_ms);
+  try {
+    workshop_.store.release(task, delay_ms, true);
+  } catch (const StoreError& error) {
+    spdlog::error("render {}: {}", task.job_id, error.what());
+  }
+}
+
+/// Removes the files of a job that will never be asked for them.
+void TaskRunner::tidy(const std::string& id) {
+  const std::optional<Job> job = workshop_.store.find(id);
+  if (job && job->state != api::JobState::canceled && job->state != api::JobState::failed) return;
+  try {
+    workshop_.artifacts.remove_all(id);
+  } catch (const FileError& error) {
+    spdlog::warn("render {}: {}", id, error.what());  // the next start tries again
+  }
+}
+
+}  // namespace translucube::server

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <stop_token>
+#include <string>
+
+#include "api/catalog.h"
+#include "api/problem.h"
+#include "server/artifact_store.h"
+#include "server/engine.h"
+#include "server/job_store.h"
+
+namespace translucube::server {
+
+/// What the workers share; all of it outlives them.
+struct Workshop {
+  const api::Catalog& catalog;
+  JobStore& store;
+  ArtifactStore& artifacts;
+  Engine engine;
+  int threads = 0;  ///< for each render; 0: all cores
+};
+
+/// Works on claimed tasks, one at a time; keeps the scene and the merged film of the last job, so
+/// that the next task of the same job starts at once.
+class TaskRunner {
+ public:
+  explicit TaskRunner(Workshop& workshop) : workshop_(workshop) {}
+
+  /// Traces the task's pass, stores and merges it, and ends the job or plans its next pass.
+  /// Whatever fails ends in the store: as a failed job, or as a task to try again. `work` stops the
+  /// tracing; the task is then given back. Does not throw.
+  void run(const Task& task, std::stop_source work);
+  void forget();  ///< frees the memory of the last job
+  const std::string& job_in_hand() const { return hand_.id; }
+
+ private:
+  struct Hand {
+    std::string id;
+    std::string canonical;
+    Quality quality;
+    std::uint64_t pixels = 0;
+    std::shared_ptr<const Scene> scene;
+    Film film;
+    double seconds = 0;  ///< wall clock of tracing, over all runs of the service
+    double seconds_at_checkpoint = 0;
+  };
+
+  void run_or_throw(const Task& task, std::stop_source work);
+  bool take_in_hand(const Task& task, const Job& job, std::stop_token stop);
+  void finish(const Task& task, double task_seconds, bool with_pass);
+  void fail(const Task& task, const api::Problem& problem);
+  void retry_later(const Task& task, const std::string& reason);
+  void tidy(const std::string& id);
+  std::optional<std::uint32_t> total_samples() const;
+  int threads() const;
+
+  Workshop& workshop_;
+  Hand hand_;
+};
+
+}  // namespace translucube::server

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/render_task.h"
+
+namespace translucube::server {
+
+/// A bounded pool of threads that claim tasks and work on them. Tasks of different renders run at
+/// the same time; those of one render follow each other, since each plans the next.
+class WorkerPool {
+ public:
+  /// `on_change` is called by the workers whenever a job in the store has changed.
+  WorkerPool(Workshop workshop, int workers, std::function<void()> on_change);
+  ~WorkerPool();  ///< stops
+
+  void wake();                           ///< there may be a task
+  void stop_job(const std::string& id);  ///< stops the pass that is traced for it, if one is
+  void stop();  ///< stops all passes, gives their tasks back, waits for the threads
+
+ private:
+  void work(std::stop_token stop);
+  void run(TaskRunner& runner, const Task& task, std::stop_token stop);
+
+  Workshop workshop_;
+  std::function<void()> on_change_;
+  std::mutex mutex_;
+  std::condition_variable_any awake_;
+  std::uint64_t wakes_ = 0;
+  std::multimap<std::string, std::stop_source> running_;  ///< by job
+  std::vector<std::jthread> threads_;
+};
+
+}  // namespace translucube::server
