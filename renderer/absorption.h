@@ -51,7 +51,12 @@ class SpectralLane {
   std::vector<Operator> table_;
 };
 
-using Lane = std::variant<ClearLane, RgbLane, SpectralLane>;
+/// Not an absorber but a view: radiance times length, whose mean over a clear image is the mean path.
+struct LengthLane {
+  Rgb apply(Rgb radiance, double length) const { return radiance * static_cast<float>(length); }
+};
+
+using Lane = std::variant<ClearLane, RgbLane, SpectralLane, LengthLane>;
 
 /// The lane of a material for lengths in `unit_mm`. sigma_a_peak finite.
 Lane make_lane(const Material& material, double unit_mm);

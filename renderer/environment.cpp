@@ -41,7 +41,8 @@ void ImageEnvironment::build_sampling() {
   for (int y = 0; y < height_; ++y) {
     const double solid_angle = std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_);
     for (int x = 0; x < width_; ++x) {
-      const double mean = (row(x, y - 1) + 6 * row(x, y) + row(x, y + 1)) / 64;
+      // Photographs hold slightly negative pixels; they are left to the other sampling techniques.
+      const double mean = std::fmax(0.0, (row(x, y - 1) + 6 * row(x, y) + row(x, y + 1)) / 64);
       total += weight[std::size_t(y) * width_ + x] = mean * solid_angle;
     }
   }

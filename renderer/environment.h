@@ -33,7 +33,7 @@ struct UniformEnvironment {
 /// the top row; bilinear between pixel centres, periodic in u, clamped in v.
 class ImageEnvironment {
  public:
-  /// `rotation_rad` turns the map about +y, positive from +z towards +x. Pixels finite and >= 0.
+  /// `rotation_rad` turns the map about +y, positive from +z towards +x. Pixels finite.
   ImageEnvironment(const Image& image, double rotation_rad, double scale);
 
   Rgb radiance_from(Vec3 direction) const;

@@ -32,8 +32,6 @@ Environment make_environment(const EnvironmentSpec& spec) {
     return UniformEnvironment{constant->radiance * static_cast<float>(spec.scale)};
   try {
     const Image image = read_image(std::get<ImageEnvironmentSpec>(spec.source).file);
-    for (const float v : image.pixels)
-      if (v < 0) throw ImageError("the environment has negative radiance");
     return ImageEnvironment(image, spec.rotation_deg * std::numbers::pi / 180, spec.scale);
   } catch (const ImageError& error) {
     throw SceneError(SceneError::Part::environment, error.what());

@@ -19,8 +19,11 @@
 namespace translucube {
 namespace {
 
-/// Below this weight a path survives with probability weight / threshold.
-constexpr double roulette_weight = 1.0 / 8;
+/// Below this weight a path survives with probability weight / threshold: low where following it is
+/// cheap, high where each turn is a long walk (chosen by relMSE x CPU on the peers' materials).
+constexpr double roulette_of_clear = 1.0 / 64;
+/// The same for a scattered path, relative to its weight at the first scattering.
+constexpr double roulette_of_scattered = 1.0 / 2;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
 /// light that is trapped for good (a camera inside a clear body) gets there.
 constexpr std::uint32_t event_cap = 20'000;
@@ -32,6 +35,7 @@ struct Path {
   Vec3 n;             ///< outward normal, at the boundary
   double length = 0;  ///< inside the body so far
   double weight = 1;
+  double roulette = roulette_of_clear;  ///< weight below which chance decides
   double pdf = 0;  ///< of d, where connect() had a chance to find it too; 0: none had
   std::uint32_t pixel = 0, events = 0;
   PathSampler sampler;
@@ -208,6 +212,7 @@ class Tracer {
     if constexpr (scattering) {
       if (scattered_weight <= 0) return;
       scattered.weight = scattered_weight;
+      scattered.roulette = roulette_of_scattered * scattered_weight;
       scattered.sampler = path.sampler.split();
       note("scatter", scattered);
       scattered.d = interior_.medium.scatter(scattered.d, scattered.sampler.rng());
@@ -249,6 +254,7 @@ class Tracer {
       path.d = frame.to_world(sample.transmitted->wi);
       path.weight *= sample.transmitted->weight;
       path.pdf = 0;
+      if constexpr (scattering) path.roulette = roulette_of_scattered * path.weight;
       if (survives(path)) walking_.push_back(path);
     }
   }
@@ -380,9 +386,9 @@ class Tracer {
 
   /// Unbiased: the weight lost to those that end is given to those that survive.
   static bool survives(Path& path) {
-    if (path.weight >= roulette_weight) return true;
-    if (path.sampler.rng().uniform() * roulette_weight >= path.weight) return false;
-    path.weight = roulette_weight;
+    if (path.weight >= path.roulette) return true;
+    if (path.sampler.rng().uniform() * path.roulette >= path.weight) return false;
+    path.weight = path.roulette;
     return true;
   }
 

@@ -1,0 +1,136 @@
+#include "renderer/mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "tests/support/meshes.h"
+#include "tests/support/scenes.h"
+
+namespace translucube::test {
+namespace {
+
+TEST(Mesh, OfABoxHasItsVolumeAndArea) {
+  TriangleMesh mesh = box({1, 2, 3});
+  close_mesh(mesh);
+  EXPECT_NEAR(volume(mesh), 6, 1e-12);
+  EXPECT_NEAR(surface_area(mesh), 22, 1e-12);
+}
+
+TEST(Mesh, TurnedInsideOutIsTurnedBack) {
+  TriangleMesh mesh = box({1, 1, 1});
+  for (Triangle& t : mesh.triangles) std::swap(t[0], t[1]);
+  EXPECT_LT(volume(mesh), 0);
+  close_mesh(mesh);
+  EXPECT_GT(volume(mesh), 0);
+}
+
+TEST(Mesh, WithAHoleIsRefused) {
+  TriangleMesh mesh = box({1, 1, 1});
+  mesh.triangles.pop_back();
+  EXPECT_THROW(close_mesh(mesh), MeshError);
+}
+
+TEST(Mesh, WithOneFaceTurnedIsRefused) {
+  TriangleMesh mesh = box({1, 1, 1});
+  std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+  EXPECT_THROW(close_mesh(mesh), MeshError);
+}
+
+TEST(Mesh, EmptyOrFlatIsRefused) {
+  TriangleMesh empty;
+  EXPECT_THROW(close_mesh(empty), MeshError);
+  TriangleMesh flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}}};
+  EXPECT_THROW(close_mesh(flat), MeshError);
+}
+
+TEST(Mesh, FromObjAndPlyFilesIsTheSameBody) {
+  const auto folder = std::filesystem::temp_directory_path() / "translucube_mesh_test";
+  std::filesystem::create_directories(folder);
+  const TriangleMesh mesh = icosphere(2);
+  write_obj(mesh, folder / "ball.obj");
+  write_ply(mesh, folder / "ball.ply");
+  for (const char* name : {"ball.obj", "ball.ply"}) {
+    TriangleMesh read = read_mesh(folder / name);
+    close_mesh(read);
+    EXPECT_EQ(read.triangles.size(), mesh.triangles.size()) << name;
+    EXPECT_NEAR(volume(read), volume(mesh), 1e-5) << name;
+    EXPECT_NO_THROW(check_mesh(folder / name));
+  }
+  std::ofstream(folder / "empty.obj") << "# nothing\n";
+  EXPECT_THROW(check_mesh(folder / "empty.obj"), SceneError);
+  EXPECT_THROW(check_mesh(folder / "absent.ply"), SceneError);
+  EXPECT_THROW(check_mesh("/etc/passwd"), SceneError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(MeshRays, LeaveAndEnterOnceEach) {
+  const BuiltMesh built = build_mesh(box({2, 2, 2}));
+  const double half = 1 / std::sqrt(3.0);  // in units of the bounding sphere
+  Hit hit;
+  ASSERT_TRUE(built.mesh.enter({0.1, 0.2, 5}, {0, 0, -1}, hit));
+  EXPECT_NEAR(hit.t, 5 - half, 1e-6);
+  EXPECT_NEAR(hit.n.z, 1, 1e-9);
+  ASSERT_TRUE(built.mesh.exit(hit.p, {0, 0, -1}, 1e30, hit));
+  EXPECT_NEAR(hit.t, 2 * half, 1e-6);
+  EXPECT_NEAR(hit.n.z, -1, 1e-9);
+  EXPECT_FALSE(built.mesh.enter(hit.p, {0, 0, -1}, hit));
+  EXPECT_FALSE(built.mesh.exit({0, 0, 0}, {0, 0, -1}, 0.5 * half, hit));
+  EXPECT_TRUE(built.mesh.inside({0.9 * half, -0.9 * half, 0}));
+  EXPECT_FALSE(built.mesh.inside({1.1 * half, 0, 0}));
+}
+
+Scene mesh_body(const TriangleMesh& mesh, const Material& m) {
+  return body(build_mesh(mesh).mesh, m);
+}
+
+TEST(WhiteFurnace, ABoxVanishesAndLosesNoLight) {
+  // Total internal reflection traps light in a box; its corners and edges are where rays get lost.
+  for (const double sigma_s : {0.0, 0.3, 5.0}) {
+    Scene scene = mesh_body(box({1, 1.5, 2}), material(1.5, 0, sigma_s));
+    scene.camera = Camera({1.5, 1.1, 2.5}, {0, 0, 0}, {0, 1, 0}, 40, 32, 32);
+    scene.width = scene.height = 32;
+    const Film film = trace(scene, 256);
+    EXPECT_NEAR(image_mean(film).mean, 1, 1e-3)
+        << sigma_s << " +- " << image_mean(film).standard_error;
+    EXPECT_LT(film.counters.truncated_energy / double(film.counters.camera_samples), 1e-5)
+        << sigma_s;
+  }
+}
+
+TEST(WhiteFurnace, AKnotOfGlassVanishes) {
+  // A body that is not convex: light leaves and enters again.
+  Scene scene = mesh_body(knot(240, 24), material(1.5, 0, 1.0));
+  scene.camera = Camera({0, 0, 3.5}, {0, 0, 0}, {0, 1, 0}, 36, 32, 32);
+  scene.width = scene.height = 32;
+  const Film film = trace(scene, 128);
+  EXPECT_NEAR(image_mean(film).mean, 1, 1.5e-3) << image_mean(film).standard_error;
+  EXPECT_LT(film.counters.truncated_energy / double(film.counters.camera_samples), 1e-5);
+}
+
+TEST(MeanPathLength, OfABallOfTrianglesIsThatOfTheSphere) {
+  Scene scene = mesh_body(icosphere(5), material(1.5, 0, 2));
+  scene.lanes = {LengthLane{}};
+  look_from_afar(scene, 1.0, 48);
+  const Estimate e = image_mean(trace(scene, 256));
+  EXPECT_NEAR(e.mean / (std::numbers::pi / 4) / 3, 1, 6e-3) << e.standard_error;
+}
+
+TEST(Ball, OfManyTrianglesLooksLikeTheSphere) {
+  const Material m = material(1.5, 0, 4);
+  Scene sphere = body(Sphere{}, m), ball = mesh_body(icosphere(6), m);
+  for (Scene* scene : {&sphere, &ball}) {
+    scene->environment = half_space_light(true);
+    look_from_afar(*scene, 1.1, 32);
+  }
+  const Estimate a = image_mean(trace(sphere, 512)), b = image_mean(trace(ball, 512));
+  const double error = std::hypot(a.standard_error, b.standard_error);
+  EXPECT_NEAR(a.mean, b.mean, 4 * error + 1e-4);
+  EXPECT_LT(error / a.mean, 2e-3);
+}
+
+}  // namespace
+}  // namespace translucube::test

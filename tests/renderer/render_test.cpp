@@ -1,0 +1,182 @@
+// The mechanics of a render: passes, determinism, films, stopping.
+
+#include "renderer/render.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "tests/support/scenes.h"
+
+namespace translucube::test {
+namespace {
+
+TEST(Passes, CoverEverySampleOnceAndInOrder) {
+  for (const std::uint64_t pixels : {1ull, 256ull * 256, 4096ull * 4096})
+    for (const std::uint32_t total : {1u, 3u, 4u, 17u, 64u, 1000u, 100'000u}) {
+      std::uint32_t next = 0, index = 0;
+      while (const auto pass = plan_pass(index, pixels, total)) {
+        EXPECT_EQ(pass->index, index++);
+        EXPECT_EQ(pass->first_sample, next);
+        EXPECT_GT(pass->count, 0u);
+        next += pass->count;
+      }
+      EXPECT_EQ(next, total);
+    }
+}
+
+TEST(Passes, OfAnOpenEndedRenderAreThoseOfAFixedOne) {
+  for (std::uint32_t i = 0; i < 30; ++i) {
+    const Pass open = *plan_pass(i, 512 * 512);
+    const auto fixed = plan_pass(i, 512 * 512, open.first_sample + open.count);
+    ASSERT_TRUE(fixed);
+    EXPECT_EQ(open, *fixed);
+  }
+}
+
+Scene small_scene() {
+  Scene scene = body(Sphere{}, material(1.5, 0.2, 3));
+  scene.environment = half_space_light(true);
+  look_from_afar(scene, 1.2, 40);
+  return scene;
+}
+
+TEST(Render, GivesTheSameBitsForAnyNumberOfThreads) {
+  const Scene scene = small_scene();
+  const Film one = trace(scene, 19, 1), two = trace(scene, 19, 2), five = trace(scene, 19, 5);
+  EXPECT_EQ(one.sum, two.sum);
+  EXPECT_EQ(one.m2, two.m2);
+  EXPECT_EQ(one.sum, five.sum);
+}
+
+TEST(Render, OfAnotherSeedIsAnotherPicture) {
+  Scene scene = small_scene();
+  const Film first = trace(scene, 4);
+  scene.seed = 2;
+  EXPECT_NE(first.sum, trace(scene, 4).sum);
+}
+
+TEST(Render, ContinuesFromAFilmReadBackWithTheSameBits) {
+  const Scene scene = small_scene();
+  const Film whole = trace(scene, 24);
+  Film film(scene.width, scene.height, 1);
+  for (std::uint32_t i = 0; const auto pass = plan_pass(i, 40 * 40, 24); ++i) {
+    const PassFilm traced = *trace_pass(scene, *pass, 1);
+    merge(film, pass_film_from_bytes(to_bytes(traced)));
+    film = film_from_bytes(to_bytes(film));
+  }
+  EXPECT_EQ(film.sum, whole.sum);
+  EXPECT_EQ(film.m2, whole.m2);
+  EXPECT_EQ(film.counters.flights, whole.counters.flights);
+}
+
+TEST(Render, StopsWhenAskedTo) {
+  const Scene scene = small_scene();
+  std::stop_source stop;
+  const RenderResult result =
+      render(scene, SampleTarget{1u << 20}, 2, stop.get_token(), [&](const Progress& p) {
+        if (p.passes == 3) stop.request_stop();
+      });
+  EXPECT_TRUE(result.stopped);
+  EXPECT_EQ(result.film.passes, 3u);
+  EXPECT_EQ(result.film.sum, trace(scene, result.film.samples).sum);
+}
+
+TEST(Render, KeepsToItsTime) {
+  const RenderResult result = render(small_scene(), TimeTarget{0.3}, 2);
+  EXPECT_GT(result.film.passes, 0u);
+  EXPECT_GT(result.stats.seconds, 0.25);
+  EXPECT_LT(result.stats.seconds, 1.5);
+}
+
+TEST(RelativeError, IsTheErrorAgainstAnIndependentRender) {
+  Scene scene = small_scene();
+  const RenderResult result = render(scene, ErrorTarget{0.05}, 0);
+  EXPECT_LE(result.stats.relative_error, 0.05);
+  scene.seed = 77;
+  const Image reference = develop(trace(scene, 16 * result.film.samples));
+  const Image image = develop(result.film);
+  double sum = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const double d = image.pixels[i] - reference.pixels[i], r = reference.pixels[i];
+    sum += d * d / (r * r + 0.01);
+  }
+  const double error = std::sqrt(sum / static_cast<double>(image.pixels.size()));
+  EXPECT_NEAR(result.stats.relative_error / error, 1, 0.25);
+}
+
+TEST(Variance, OfThePixelsIsTheSpreadBetweenSeeds) {
+  Scene scene = small_scene();
+  double spread = 0, estimate = 0;
+  std::vector<double> sum(40 * 40 * 3, 0), squares(40 * 40 * 3, 0);
+  constexpr int runs = 24;
+  for (int run = 0; run < runs; ++run) {
+    scene.seed = 100 + run;
+    const Film film = trace(scene, 32);
+    const Image image = develop(film), v = variance(film);
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      sum[i] += image.pixels[i];
+      squares[i] += double(image.pixels[i]) * image.pixels[i];
+      estimate += v.pixels[i] / runs;
+    }
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    spread += (squares[i] - sum[i] * sum[i] / runs) / (runs - 1);
+  EXPECT_NEAR(estimate / spread, 1, 0.1);
+}
+
+TEST(Film, RefusesBytesThatAreShortForeignOrChanged) {
+  const Scene scene = small_scene();
+  const Film film = trace(scene, 8);
+  const std::string bytes = to_bytes(film);
+  EXPECT_NO_THROW(film_from_bytes(bytes));
+  EXPECT_THROW(film_from_bytes(""), std::runtime_error);
+  EXPECT_THROW(film_from_bytes(bytes.substr(0, bytes.size() - 4)), std::runtime_error);
+  EXPECT_THROW(pass_film_from_bytes(bytes), std::runtime_error);
+  for (const std::size_t at :
+       {std::size_t{9}, std::size_t{50}, bytes.size() / 2, bytes.size() - 1}) {
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(changed[at] ^ 1);
+    EXPECT_THROW(film_from_bytes(changed), std::runtime_error) << at;
+  }
+}
+
+TEST(Film, RefusesPassesOutOfOrder) {
+  const Scene scene = small_scene();
+  Film film(40, 40, 1);
+  EXPECT_THROW(merge(film, *trace_pass(scene, *plan_pass(1, 1600), 1)), std::invalid_argument);
+}
+
+TEST(ExplainSample, AddsUpToTheSampleThatItReplays) {
+  const Scene scene = small_scene();
+  const std::string log = explain_sample(scene, 20, 20, 5);
+  EXPECT_NE(log.find("emit"), std::string::npos);
+  EXPECT_NE(log.find("enter"), std::string::npos);
+  EXPECT_NE(log.find("radiance"), std::string::npos);
+  EXPECT_EQ(log, explain_sample(scene, 20, 20, 5));
+}
+
+TEST(NonFiniteLight, IsCountedAndNotHidden) {
+  Scene scene = body(Sphere{}, material(1.5, 0, 0));
+  scene.environment = UniformEnvironment{{std::nanf(""), 1, 1}};
+  look_from_afar(scene, 1, 4);
+  const Film film = trace(scene, 4);
+  EXPECT_GT(film.counters.nan_samples, 0u);
+  EXPECT_TRUE(std::isnan(develop(film).pixels[0]));
+}
+
+TEST(CameraInside, AClearSphereTruncatesOnlyTrappedLight) {
+  Scene scene = body(Sphere{}, material(1.5, 0, 0));
+  scene.width = scene.height = 8;
+  scene.camera = Camera({0.9, 0, 0}, {0, 0, 0}, {0, 1, 0}, 60, 8, 8);
+  scene.camera_inside = true;
+  const Film ahead = trace(scene, 8);
+  EXPECT_EQ(ahead.counters.truncated_energy, 0);
+  EXPECT_NEAR(image_mean(ahead).mean, 1, 1e-2);
+  scene.camera = Camera({0.9, 0, 0}, {0.9, 0, 1}, {0, 1, 0}, 10, 8, 8);
+  EXPECT_GT(trace(scene, 1).counters.truncated_energy, 0);
+}
+
+}  // namespace
+}  // namespace translucube::test

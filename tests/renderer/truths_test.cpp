@@ -1,0 +1,133 @@
+// The truths of design.md section 6 that the plain transport must meet: exact values, not our own
+// output.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/scenes.h"
+
+namespace translucube::test {
+namespace {
+
+constexpr double reference_thickness = 10, radius = 20;  // mm
+
+/// sigma_s of the cube's coordinate, in 1 / radius of the default sphere.
+double sigma_s_of(double s) { return 4.0 / 3 * s / (1 - s) / reference_thickness * radius; }
+
+TEST(WhiteFurnace, ASmoothBodyOfAnyDensityAndIndexVanishes) {
+  for (const double s : {0.0, 0.2, 0.5, 0.9, 0.99, 1.0})
+    for (const double ior : {1.0, 1.33, 1.5, 2.5}) {
+      Scene scene = body(Sphere{}, material(ior, 0, sigma_s_of(s)));
+      look_from_afar(scene, 0.7, 32);  // the whole image lies on the body
+      const Estimate e = image_mean(trace(scene, s > 0.95 && s < 1 ? 256 : 512));
+      EXPECT_NEAR(e.mean, 1, 1e-3) << "s " << s << " ior " << ior << " +- " << e.standard_error;
+      EXPECT_LT(e.standard_error, 3.5e-4);
+    }
+}
+
+TEST(WhiteFurnace, AnisotropicScatteringLosesNothing) {
+  for (const double g : {-0.99, -0.5, 0.5, 0.9, 0.99}) {
+    Scene scene = body(Sphere{}, material(1.5, 0, 5, g));
+    look_from_afar(scene, 0.7, 32);
+    EXPECT_NEAR(image_mean(trace(scene, 256)).mean, 1, 1e-3) << "g " << g;
+  }
+}
+
+// Single-scattering GGX loses the light that would meet a second microfacet: what is left is known
+// from Mitsuba 0.6 (shared/peers.md), pbrt-v4 within .03.
+TEST(WhiteFurnace, ARoughBodyKeepsWhatSingleScatteringKeeps) {
+  const std::pair<double, double> kept[] = {{.05, .983}, {.1, .945}, {.25, .787}, {.5, .556}};
+  for (const auto& [alpha, expected] : kept) {
+    Scene scene = body(Sphere{}, material(1.5, alpha, 0));
+    look_from_afar(scene, 1.0, 64);
+    const double covered = std::numbers::pi / 4;
+    const Estimate e = image_mean(trace(scene, 64));
+    EXPECT_NEAR((e.mean - (1 - covered)) / covered, expected, 0.01) << "alpha " << alpha;
+  }
+}
+
+/// Mean path inside for each ray that meets the sphere: parallel light over its disc is diffuse
+/// light over its surface.
+Estimate mean_path(const Material& m, std::uint32_t samples) {
+  Scene scene = body(Sphere{}, m);
+  scene.lanes = {LengthLane{}};
+  look_from_afar(scene, 1.0, 64);
+  const Estimate e = image_mean(trace(scene, samples));
+  constexpr double covered = std::numbers::pi / 4;
+  return {e.mean / covered, e.standard_error / covered};
+}
+
+// Blanco and Fournier 2003, with the factor n^2 of the radiance inside: 4 V / S n^2.
+TEST(MeanPathLength, OfAScatteringSphereDoesNotDependOnDensity) {
+  for (const double ior : {1.0, 1.33, 1.5, 2.5})
+    for (const double sigma_s : {0.1, 1.0, 10.0}) {
+      const double expected = 4.0 / 3 * ior * ior;
+      const Estimate path = mean_path(material(ior, 0, sigma_s), 512);
+      EXPECT_NEAR(path.mean / expected, 1, 5e-3) << "ior " << ior << " sigma_s " << sigma_s;
+      EXPECT_LT(path.standard_error / expected, 1.7e-3);
+    }
+}
+
+TEST(MeanPathLength, OfADenseSphereIsTheSame) {
+  const Estimate path = mean_path(material(1.5, 0, 100), 1024);
+  EXPECT_NEAR(path.mean / 3, 1, 5e-3) << path.standard_error;
+  EXPECT_LT(path.standard_error / 3, 2.2e-3);
+}
+
+TEST(MeanPathLength, OfAnisotropicScatteringIsTheSame) {
+  for (const double g : {-0.7, 0.8})
+    EXPECT_NEAR(mean_path(material(1.5, 0, 10, g), 256).mean / 3, 1, 5e-3) << "g " << g;
+}
+
+TEST(MeanPathLength, OfAClearSmoothSphereLeavesOutTheTrappedDirections) {
+  for (const double ior : {1.0, 1.33, 1.5, 2.5}) {
+    const double trapped = std::pow(1 - 1 / (ior * ior), 1.5);
+    const double expected = 4.0 / 3 * ior * ior * (1 - trapped);
+    EXPECT_NEAR(mean_path(material(ior, 0, 0), 128).mean / expected, 1, 2e-3) << "ior " << ior;
+  }
+}
+
+/// Reflectance and transmittance of a slab at normal incidence.
+struct SlabOptics {
+  Estimate reflectance, transmittance;
+};
+SlabOptics slab_optics(const Material& m, float sigma_a, std::uint32_t samples) {
+  SlabOptics optics;
+  for (const bool above : {true, false}) {
+    Scene scene = body(Slab{}, m);
+    scene.environment = half_space_light(above);
+    scene.lanes = {RgbLane{{sigma_a, sigma_a, sigma_a}}};
+    look_from_afar(scene, 0.1, 64);
+    (above ? optics.reflectance : optics.transmittance) = image_mean(trace(scene, samples));
+  }
+  return optics;
+}
+
+TEST(Slab, OfMatchedIndexMeetsVanDeHulst) {
+  // sigma_a 10, sigma_s 90, thickness 0.02 (van de Hulst 1980, table 35).
+  const SlabOptics s = slab_optics(material(1, 0, 90 * 0.02, 0.75), 10 * 0.02f, 1024);
+  EXPECT_NEAR(s.reflectance.mean / 0.09739, 1, 5e-3) << s.reflectance.standard_error;
+  EXPECT_NEAR(s.transmittance.mean / 0.66096, 1, 5e-3) << s.transmittance.standard_error;
+  EXPECT_LT(s.reflectance.standard_error / 0.09739, 1.5e-3);
+}
+
+TEST(Slab, ThickEnoughMeetsGiovanellisHalfSpace) {
+  // Albedo 0.9, ior 1.5, normal incidence, with the specular part (Giovanelli 1955).
+  constexpr double depth = 60;  // mean free paths of scattering
+  const SlabOptics s = slab_optics(material(1.5, 0, depth), depth / 9, 128);
+  EXPECT_NEAR(s.reflectance.mean / 0.2600, 1, 5e-3) << s.reflectance.standard_error;
+  EXPECT_LT(s.reflectance.standard_error / 0.26, 2e-3);
+  EXPECT_LT(s.transmittance.mean, 1e-6);
+}
+
+TEST(Slab, ClearAndAbsorbingReflectsBetweenItsFaces) {
+  const double f = 0.04, tau = 0.5;
+  const SlabOptics s = slab_optics(material(1.5, 0, 0), 0.5f, 256);
+  const double e = std::exp(-tau), e2 = e * e;
+  EXPECT_NEAR(s.transmittance.mean, (1 - f) * (1 - f) * e / (1 - f * f * e2), 1e-4);
+  EXPECT_NEAR(s.reflectance.mean, f + f * (1 - f) * (1 - f) * e2 / (1 - f * f * e2), 1e-4);
+}
+
+}  // namespace
+}  // namespace translucube::test

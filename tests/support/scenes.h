@@ -1,0 +1,76 @@
+#pragma once
+
+// Scenes with known answers, built below the request: shapes, interfaces and lanes by hand.
+
+#include <cmath>
+#include <memory>
+
+#include "renderer/render.h"
+#include "renderer/scene_data.h"
+
+namespace translucube::test {
+
+struct Estimate {
+  double mean = 0, standard_error = 0;
+};
+
+/// Mean of one lane over the image and channels; the standard error is lane 0's, so ask it of lane
+/// 0.
+inline Estimate image_mean(const Film& film, int lane = 0) {
+  Estimate e;
+  const Image image = develop(film, lane);
+  const double n = static_cast<double>(image.pixels.size());
+  for (const float p : image.pixels) e.mean += p / n;
+  // The three channels of a pixel share its paths.
+  const Image spread = variance(film);
+  double sum = 0;
+  for (std::size_t i = 0; i < spread.pixels.size(); i += 3) sum += spread.pixels[i];
+  e.standard_error = std::sqrt(sum) * 3 / n;
+  return e;
+}
+
+/// A camera from so far away that its rays are parallel (to 1e-5), along -z, over [-half, half]^2.
+inline void look_from_afar(Scene& scene, double half, int size) {
+  constexpr double distance = 1e5;
+  scene.width = scene.height = size;
+  scene.camera = Camera({0, 0, distance}, {0, 0, 0}, {0, 1, 0},
+                        2 * std::atan(half / distance) * 180 / std::numbers::pi, size, size);
+}
+
+inline Scene body(Shape shape, const Material& material, std::uint64_t seed = 1) {
+  Scene scene;
+  scene.seed = seed;
+  scene.shape = std::move(shape);
+  scene.interface = make_interface(material);
+  scene.interior = make_interior(material, 1.0);
+  scene.environment = UniformEnvironment{};
+  scene.lanes = {ClearLane{}};
+  return scene;
+}
+
+inline Material material(double ior, double alpha, double sigma_s, double g = 0) {
+  Material m;
+  m.coefficients = {0, alpha, sigma_s};
+  m.g = g;
+  m.ior = ior;
+  return m;
+}
+
+/// Radiance 1 from the half space z > 0 (or z < 0), 0 from the other one.
+inline ImageEnvironment half_space_light(bool above) {
+  Image image(2048, 64);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const bool towards_z = x >= image.width / 4 && x < 3 * image.width / 4;
+      for (int c = 0; c < 3; ++c)
+        image.pixels[3 * (std::size_t(y) * image.width + x) + c] = towards_z == above ? 1.0f : 0.0f;
+    }
+  return ImageEnvironment(image, 0, 1);
+}
+
+/// Many passes of few samples, so that the spread between them tells the error.
+inline Film trace(const Scene& scene, std::uint32_t samples, int threads = 0) {
+  return render(scene, SampleTarget{samples}, threads).film;
+}
+
+}  // namespace translucube::test
