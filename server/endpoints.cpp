@@ -67,21 +67,20 @@ HttpResponse post_render(Endpoints& endpoints, const HttpRequest& request, const
   if (const auto* problem = std::get_if<Problem>(&submitted)) return problem_response(*problem);
   auto& [status, created] = std::get<Submission>(submitted);
 
-  std::optional<int> wait = preferred_wait(request.header("prefer"));
-  if (wait) {
-    *wait = std::min(*wait, longest_wait_s);
+  std::string applied;
+  if (const std::optional<int> asked = preferred_wait(request.header("prefer"))) {
+    const int seconds = std::min(*asked, longest_wait_s);
     const WaitingPlace place(endpoints);
     if (place.taken()) {
-      auto waited = endpoints.service.wait(status.id, std::chrono::seconds(*wait));
+      auto waited = endpoints.service.wait(status.id, std::chrono::seconds(seconds));
       if (const auto* problem = std::get_if<Problem>(&waited)) return problem_response(*problem);
       status = std::get<api::RenderStatus>(std::move(waited));
-    } else {
-      wait.reset();
+      applied = "wait=" + std::to_string(seconds);
     }
   }
   HttpResponse response = json_response(api::is_end(status.state) ? 200 : 202, to_json(status));
   response.headers = {{"Location", "/v1/renders/" + status.id}};
-  if (wait) response.headers.emplace_back("Preference-Applied", "wait=" + std::to_string(*wait));
+  if (!applied.empty()) response.headers.emplace_back("Preference-Applied", applied);
   if (!created) response.headers.emplace_back("Idempotency-Replayed", "true");
   return response;
 }

@@ -90,7 +90,7 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
   }
   if (!take_in_hand(task, *job, work.get_token())) return;
 
-  std::optional<TaskWatch::TimePoint> deadline;
+  TaskWatch::TimePoint deadline = TaskWatch::no_deadline;
   const auto start = steady_clock::now();
   if (const auto* target = std::get_if<TimeTarget>(&hand_.quality); target && task.pass.index > 0)
     deadline = start + std::chrono::duration_cast<steady_clock::duration>(

@@ -8,14 +8,13 @@
 
 namespace translucube::server {
 
-TaskWatch::TaskWatch(JobStore& store, const Task& task, std::stop_source work,
-                     std::optional<TimePoint> deadline)
+TaskWatch::TaskWatch(JobStore& store, const Task& task, std::stop_source work, TimePoint deadline)
     : thread_([this, &store, task, work, deadline](std::stop_token ended) {
         watch(ended, store, task, work, deadline);
       }) {}
 
 void TaskWatch::watch(std::stop_token ended, JobStore& store, const Task& task,
-                      std::stop_source work, std::optional<TimePoint> deadline) {
+                      std::stop_source work, TimePoint deadline) {
   using std::chrono::steady_clock;
   const std::chrono::milliseconds renewal(std::max<std::int64_t>(store.lease_ms() / 3, 1));
   TimePoint next_renewal = steady_clock::now() + renewal;
@@ -24,14 +23,14 @@ void TaskWatch::watch(std::stop_token ended, JobStore& store, const Task& task,
   std::condition_variable_any condition;
   std::unique_lock lock(mutex);
   while (true) {
-    const TimePoint until = deadline ? std::min(*deadline, next_renewal) : next_renewal;
+    const TimePoint until = std::min(deadline, next_renewal);
     condition.wait_until(lock, ended, until, [] { return false; });
     if (ended.stop_requested()) return;
     const TimePoint now = steady_clock::now();
-    if (deadline && now >= *deadline) {
+    if (now >= deadline) {
       out_of_time_ = true;
       work.request_stop();
-      deadline.reset();
+      deadline = no_deadline;
     }
     if (now < next_renewal) continue;
     next_renewal = now + renewal;

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <optional>
 #include <stop_token>
 #include <thread>
 
@@ -15,14 +14,14 @@ namespace translucube::server {
 class TaskWatch {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
-  TaskWatch(JobStore& store, const Task& task, std::stop_source work,
-            std::optional<TimePoint> deadline);
+  static constexpr TimePoint no_deadline = TimePoint::max();
+  TaskWatch(JobStore& store, const Task& task, std::stop_source work, TimePoint deadline);
 
   bool out_of_time() const { return out_of_time_; }
 
  private:
   void watch(std::stop_token ended, JobStore& store, const Task& task, std::stop_source work,
-             std::optional<TimePoint> deadline);
+             TimePoint deadline);
 
   std::atomic<bool> out_of_time_ = false;
   std::jthread thread_;  // last: it ends before the members that it uses

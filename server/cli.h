@@ -1,0 +1,43 @@
+#pragma once
+
+// The command line's verbs over plain options; main.cpp reads them.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace translucube::server {
+
+inline constexpr int exit_failure = 1;      ///< the machine's fault
+inline constexpr int exit_bad_request = 2;  ///< the caller's
+
+/// The config that `--config` names, else $TRANSLUCUBE_CONFIG, else the one beside the build tree
+/// of this executable, else the one of the source tree.
+std::filesystem::path config_file(const std::string& named);
+
+struct RenderOptions {
+  std::string request;  ///< a file, or "-" for standard input
+  std::vector<std::filesystem::path> outputs;
+  std::optional<std::filesystem::path> stats;
+  std::string config;
+  std::optional<std::string> display, view;
+  int threads = 0;  ///< 0: all cores
+  std::optional<std::pair<int, int>> pixel;
+  std::uint32_t sample = 0;
+};
+
+/// Renders, or explains one sample of one pixel. The exit status; messages go to standard error.
+int run_render(const RenderOptions& options);
+
+struct ServeOptions {
+  std::string config;
+  std::optional<std::string> host;
+  std::optional<int> port, threads, workers;
+  std::optional<std::filesystem::path> data;
+};
+
+/// Serves until SIGTERM or SIGINT. One line on standard output says where, once it is ready.
+int run_serve(const ServeOptions& options);
+
+}  // namespace translucube::server

@@ -1,0 +1,193 @@
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <stop_token>
+
+#include "api/parse.h"
+#include "api/render_status.h"
+#include "renderer/image_io.h"
+#include "renderer/render.h"
+#include "server/cli.h"
+#include "server/file.h"
+#include "server/image_artifacts.h"
+#include "server/signals.h"
+
+namespace translucube::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Ends the command with a message and an exit status.
+struct Refusal {
+  int status;
+  std::string message;
+};
+
+Refusal refusal_of(const api::Problem& problem) { return {exit_bad_request, to_text(problem)}; }
+
+std::string read_document(const std::string& name, std::uint64_t limit) {
+  std::ifstream file;
+  if (name != "-") {
+    if (fs::is_directory(name)) throw Refusal{exit_bad_request, name + ": is a folder\n"};
+    file.open(name, std::ios::binary);
+    if (!file) throw Refusal{exit_bad_request, name + ": cannot be read\n"};
+  }
+  std::istream& in = name == "-" ? std::cin : file;
+  // One byte more than the parser takes, so that it is the parser that refuses.
+  std::string text;
+  std::istreambuf_iterator<char> at(in), end;
+  for (; at != end && text.size() <= limit; ++at) text += *at;
+  return text;
+}
+
+struct Output {
+  fs::path file;
+  ImageForm form;
+};
+
+/// All that can be wrong with the outputs is told before the work begins.
+std::vector<Output> checked_outputs(const RenderOptions& options, const ColorConfig& colors) {
+  std::vector<Output> outputs;
+  bool for_display = false;
+  for (const fs::path& file : options.outputs) {
+    const std::string extension = file.extension().string();
+    const auto format = image_format(extension.empty() ? "" : extension.substr(1));
+    if (!format)
+      throw Refusal{exit_bad_request, file.string() + ": must end in .exr, .png, .tiff or .jpeg\n"};
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    if (!fs::is_directory(folder))
+      throw Refusal{exit_failure, folder.string() + ": there is no such folder\n"};
+    // The finished file takes the place of what is there: never of a device, a pipe, a folder.
+    if (fs::exists(file) && !fs::is_regular_file(file))
+      throw Refusal{exit_failure, file.string() + ": is not an ordinary file\n"};
+    ImageQuery query{*format, {}, {}, {}};
+    if (*format != ImageFormat::exr) {
+      for_display = true;
+      query.display = options.display;
+      query.view = options.view;
+    }
+    const auto form = image_form(query, colors.displays());
+    if (const auto* problem = std::get_if<api::Problem>(&form)) {
+      std::string message;
+      for (const api::Fault& fault : problem->faults)
+        message += "--" + fault.pointer.substr(1) + ": " + fault.detail + '\n';
+      throw Refusal{exit_bad_request, message};
+    }
+    outputs.push_back({file, std::get<ImageForm>(form)});
+  }
+  if ((options.display || options.view) && !for_display)
+    throw Refusal{exit_bad_request, "--display and --view are for PNG, TIFF and JPEG outputs\n"};
+  return outputs;
+}
+
+/// One line on a terminal that writes over itself; nothing where standard error is no terminal.
+class ProgressLine {
+ public:
+  void show(const Progress& progress) {
+    if (!terminal_) return;
+    std::string total, error = "-", eta = "-";
+    char number[32];
+    if (progress.total_samples) total = '/' + std::to_string(*progress.total_samples);
+    if (std::isfinite(progress.relative_error)) {
+      std::snprintf(number, sizeof number, "%.4f", progress.relative_error);
+      error = number;
+    }
+    if (progress.eta_seconds) {
+      std::snprintf(number, sizeof number, "%.0f s", *progress.eta_seconds);
+      eta = number;
+    }
+    std::fprintf(stderr, "\r\x1b[Kpass %u  samples %u%s  error %s  %.0f s  eta %s", progress.passes,
+                 progress.samples, total.c_str(), error.c_str(), progress.seconds, eta.c_str());
+    std::fflush(stderr);
+    shown_ = true;
+  }
+  ~ProgressLine() {
+    if (shown_) std::fputs("\r\x1b[K", stderr);
+  }
+
+ private:
+  const bool terminal_ = isatty(STDERR_FILENO) != 0;
+  bool shown_ = false;
+};
+
+std::string stats_document(const RenderStats& stats, const api::RenderRequest& request,
+                           const api::Catalog& catalog) {
+  nlohmann::json document = nlohmann::json::parse(api::stats_json(stats));
+  document["material"] = nlohmann::json::parse(api::material_report(request, catalog));
+  return document.dump(2) + '\n';
+}
+
+int explain(const Scene& scene, const RenderOptions& options, const api::RenderRequest& request) {
+  const auto [x, y] = *options.pixel;
+  if (x < 0 || y < 0 || x >= request.width || y >= request.height)
+    throw Refusal{exit_bad_request, "--pixel: lies outside of the image\n"};
+  std::cout << explain_sample(scene, x, y, options.sample) << std::flush;
+  return 0;
+}
+
+int render_or_throw(const RenderOptions& options, std::stop_token stop,
+                    const std::atomic<int>& signal) {
+  api::Catalog catalog = api::load_catalog(config_file(options.config));
+  catalog.any_file = true;  // the caller's own files
+  const auto parsed =
+      api::parse_render_request(read_document(options.request, catalog.limits.body_bytes), catalog);
+  if (const auto* problem = std::get_if<api::Problem>(&parsed)) throw refusal_of(*problem);
+  const auto& request = std::get<api::RenderRequest>(parsed);
+  const ColorConfig colors(catalog.display_config);
+  const std::vector<Output> outputs = checked_outputs(options, colors);
+
+  const std::shared_ptr<const Scene> scene = build_scene(api::scene_spec(request, catalog));
+  if (options.pixel) return explain(*scene, options, request);
+
+  const RenderResult result = [&] {
+    ProgressLine line;
+    return render(*scene, request.quality, options.threads, stop,
+                  [&](const Progress& progress) { line.show(progress); });
+  }();
+  if (result.stopped) return 128 + signal;
+  if (result.stats.nan_samples > 0)
+    throw Refusal{exit_failure, "The renderer made " + std::to_string(result.stats.nan_samples) +
+                                    " samples that are not finite: a bug, please report it.\n"};
+  const std::string canonical = api::canonical_json(request);
+  for (const Output& output : outputs)
+    write_atomically(output.file, [&](const fs::path& temporary) {
+      write_form(temporary, develop(result.film), output.form, colors, canonical);
+    });
+  if (options.stats)
+    write_atomically(*options.stats, stats_document(result.stats, request, catalog));
+  return 0;
+}
+
+}  // namespace
+
+int run_render(const RenderOptions& options) {
+  std::stop_source stop;
+  std::atomic<int> signal = 0;
+  const SignalWatch watch([&](int received) {
+    signal = received;
+    stop.request_stop();
+  });
+  try {
+    return render_or_throw(options, stop.get_token(), signal);
+  } catch (const Refusal& refusal) {
+    std::cerr << refusal.message;
+    return refusal.status;
+  } catch (const SceneError& error) {
+    std::cerr << error.what() << '\n';
+    return exit_bad_request;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "There is not enough memory for a render of this size.\n";
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+  }
+  return exit_failure;
+}
+
+}  // namespace translucube::server
