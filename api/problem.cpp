@@ -3,6 +3,22 @@
 #include <nlohmann/json.hpp>
 
 namespace translucube::api {
+namespace {
+
+/// A pointer may hold a client's key: nothing of it may drive a terminal. Control characters are
+/// ASCII's and U+0080 to U+009F, in UTF-8 a byte C2 and one below A0.
+std::string printable(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool c1 =
+        byte == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
+    if (c1) text.erase(i, 1);
+    if (c1 || byte < 0x20 || byte == 0x7F) text[i] = '?';
+  }
+  return text;
+}
+
+}  // namespace
 
 const ProblemKind& kind(ProblemCode code) {
   static constexpr ProblemKind malformed_json{"urn:translucube:problem:malformed-json", 400,
@@ -80,11 +96,11 @@ std::string to_json(const Problem& problem) {
 
 std::string to_text(const Problem& problem) {
   std::string text = kind(problem.code).title;
-  if (!problem.detail.empty()) text += ": " + problem.detail;
+  if (!problem.detail.empty()) text += ": " + printable(problem.detail);
   text += '\n';
   for (const Fault& fault : problem.faults) {
-    const std::string where = fault.pointer.empty() ? "(document)" : fault.pointer;
-    text += "  " + where + ": " + fault.detail + '\n';
+    const std::string where = fault.pointer.empty() ? "(document)" : printable(fault.pointer);
+    text += "  " + where + ": " + printable(fault.detail) + '\n';
   }
   return text;
 }

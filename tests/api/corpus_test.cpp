@@ -1,20 +1,13 @@
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <chrono>
 #include <set>
 
 #include "api/faults.h"
-#include "api/parse.h"
+#include "tests/api/fixture.h"
 #include "tests/support/malformed_corpus.h"
 
 namespace translucube::api {
 namespace {
-
-const Catalog& shipped_catalog() {
-  static const Catalog catalog = load_catalog(TRANSLUCUBE_SOURCE_DIR "/config/service.json");
-  return catalog;
-}
 
 const std::vector<test::MalformedBody>& corpus() {
   static const auto bodies = test::malformed_bodies();

@@ -32,7 +32,7 @@ std::string steps(const std::string& step) { return repeated(step, 16); }
 std::string with_many_keys(const std::string& value) {
   std::string text = R"({"material":{"cube":{"absorption":0,"roughness":0,"scattering":0}})";
   for (std::size_t i = 0; text.size() < mebibyte - 64; ++i)
-    text += ",\"k" + std::to_string(i) + "\":" + value;
+    text.append(",\"k").append(std::to_string(i)).append("\":").append(value);
   return text + "}";
 }
 

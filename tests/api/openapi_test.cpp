@@ -1,0 +1,156 @@
+#include "api/openapi.h"
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "api/listings.h"
+#include "api/render_status.h"
+#include "tests/api/fixture.h"
+
+namespace translucube::api {
+namespace {
+
+using nlohmann::json;
+
+const json& document() {
+  static const json parsed = json::parse(openapi_document());
+  return parsed;
+}
+const json& schema(const std::string& name) { return document()["components"]["schemas"][name]; }
+
+std::set<std::string> keys(const json& object) {
+  std::set<std::string> all;
+  for (const auto& [key, value] : object.items()) all.insert(key);
+  return all;
+}
+std::set<std::string> properties(const json& schema) { return keys(schema["properties"]); }
+
+void visit_references(const json& value, const std::function<void(const std::string&)>& visit) {
+  if (value.is_object() && value.contains("$ref")) visit(value["$ref"]);
+  if (value.is_structured())
+    for (const auto& item : value) visit_references(item, visit);
+}
+
+TEST(OpenApi, DescribesEveryCallOfTheService) {
+  EXPECT_EQ(document()["openapi"], "3.1.0");
+  EXPECT_EQ(document()["info"]["version"], TRANSLUCUBE_VERSION);
+  std::set<std::string> calls;
+  for (const auto& [path, item] : document()["paths"].items())
+    for (const auto& [method, operation] : item.items())
+      if (method != "parameters") calls.insert(method + ' ' + path);
+  EXPECT_EQ(calls, (std::set<std::string>{
+                       "post /v1/renders", "get /v1/renders", "get /v1/renders/{id}",
+                       "delete /v1/renders/{id}", "get /v1/renders/{id}/image",
+                       "post /v1/renders/{id}/cancel", "get /v1/absorbers", "get /v1/environments",
+                       "get /v1/displays", "get /livez", "get /readyz", "get /openapi.json"}));
+}
+
+TEST(OpenApi, ReferencesLeadSomewhere) {
+  visit_references(document(), [](const std::string& reference) {
+    ASSERT_TRUE(reference.starts_with("#/"));
+    EXPECT_TRUE(document().contains(json::json_pointer(reference.substr(1)))) << reference;
+  });
+}
+
+TEST(OpenApi, RequestHasTheKeysThatTheParserKnows) {
+  // The parser lists what it knows where it is asked for what it does not.
+  const auto known = [](const std::string& text) {
+    const auto result = parse_render_request(text, shipped_catalog());
+    std::string detail = std::get<Problem>(result).faults.at(0).detail;
+    const std::string prefix = "unknown key; known here: ";
+    EXPECT_TRUE(detail.starts_with(prefix)) << detail;
+    std::set<std::string> names;
+    std::istringstream words(detail.substr(prefix.size()));
+    for (std::string word; words >> word;)
+      names.insert(word.back() == ',' ? word.substr(0, word.size() - 1) : word);
+    return names;
+  };
+  EXPECT_EQ(properties(schema("RenderRequest")), known(request_with(R"("?":0)")));
+  EXPECT_EQ(properties(schema("Material")), known(material_with(R"("?":0)")));
+  EXPECT_EQ(properties(schema("CubePoint")),
+            known(R"({"material":{"cube":{"absorption":0,"roughness":0,"scattering":0,"?":0}}})"));
+  EXPECT_EQ(
+      properties(schema("Coefficients")),
+      known(R"({"material":{"coefficients":{"sigma_a_peak":0,"alpha":0,"sigma_s":0,"?":0}}})"));
+  EXPECT_EQ(properties(schema("Scene")), known(request_with(R"("scene":{"?":0})")));
+  EXPECT_EQ(properties(schema("Object")["oneOf"][0]),
+            known(request_with(R"("scene":{"object":{"?":0}})")));
+  EXPECT_EQ(properties(schema("Environment")),
+            known(request_with(R"("scene":{"environment":{"?":0}})")));
+  EXPECT_EQ(properties(schema("Camera")), known(request_with(R"("scene":{"camera":{"?":0}})")));
+  EXPECT_EQ(properties(schema("ImageSize")), known(request_with(R"("image":{"?":0})")));
+  EXPECT_EQ(properties(schema("Quality")), known(request_with(R"("quality":{"samples":1,"?":0})")));
+}
+
+void expect_defaults(const json& schema_of_value, const json& value, const std::string& where) {
+  const json& resolved =
+      schema_of_value.contains("$ref")
+          ? document()[json::json_pointer(schema_of_value["$ref"].get<std::string>().substr(1))]
+          : schema_of_value;
+  if (resolved.contains("default")) {
+    EXPECT_EQ(resolved["default"], value) << where;
+    return;
+  }
+  ASSERT_TRUE(value.is_object()) << "no default in the schema of " << where;
+  const json& object = resolved.contains("oneOf") && !resolved.contains("properties")
+                           ? resolved["oneOf"][0]
+                           : resolved;
+  for (const auto& [key, member] : value.items())
+    if (!object["properties"][key].contains("const"))
+      expect_defaults(object["properties"][key], member, where + '/' + key);
+}
+
+TEST(OpenApi, DefaultsAreThoseOfTheConfiguration) {
+  const json config = json::parse(std::ifstream(service_json()));
+  expect_defaults(schema("RenderRequest"), config["request_defaults"], "");
+}
+
+TEST(OpenApi, ExamplesAreAccepted) {
+  const json& body = document()["paths"]["/v1/renders"]["post"]["requestBody"];
+  const json& examples = body["content"]["application/json"]["examples"];
+  EXPECT_GE(examples.size(), 3u);
+  for (const auto& [name, example] : examples.items()) accepted(example["value"].dump());
+}
+
+TEST(OpenApi, AnswersHaveTheKeysOfTheirSchemas) {
+  const RenderRequest request = accepted(R"({"material":{"cube":)" + some_cube + "}}");
+  RenderStatus status;
+  status.request = canonical_json(request);
+  status.material = material_report(request, shipped_catalog());
+  status.stats = stats_json({});
+  const json answer = json::parse(to_json(status));
+  EXPECT_EQ(keys(answer), properties(schema("RenderStatus")));
+  EXPECT_EQ(keys(answer["progress"]), properties(schema("Progress")));
+  EXPECT_EQ(keys(answer["stats"]), properties(schema("Stats")));
+  EXPECT_EQ(keys(answer["material"]), properties(schema("MaterialReport")));
+  EXPECT_EQ(keys(json::parse(render_list_json({}, {}))), properties(schema("RenderList")));
+  EXPECT_EQ(keys(json::parse(absorbers_json(shipped_catalog()))),
+            properties(schema("AbsorberList")));
+  EXPECT_EQ(keys(json::parse(environments_json(shipped_catalog()))),
+            properties(schema("EnvironmentList")));
+  EXPECT_EQ(keys(json::parse(displays_json({}))), properties(schema("DisplayList")));
+  EXPECT_EQ(keys(json::parse(to_json(Problem{ProblemCode::internal, "", {{"", ""}}}))),
+            properties(schema("Problem")));
+}
+
+TEST(OpenApi, ProblemTypesAreThoseOfTheErrorTable) {
+  std::set<std::string> described;
+  for (const json& type : schema("Problem")["properties"]["type"]["enum"])
+    if (type != "about:blank") described.insert(type);
+  std::set<std::string> table;
+  for (int code = 0; code <= static_cast<int>(ProblemCode::internal); ++code)
+    table.insert(kind(static_cast<ProblemCode>(code)).type);
+  EXPECT_EQ(described, table);
+}
+
+TEST(OpenApi, StatesAreTheJobStates) {
+  std::set<std::string> described, states;
+  for (const json& state : schema("JobState")["enum"]) described.insert(state);
+  for (const JobState state : all_job_states) states.insert(std::string(name(state)));
+  EXPECT_EQ(described, states);
+}
+
+}  // namespace
+}  // namespace translucube::api
