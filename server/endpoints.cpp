@@ -209,7 +209,7 @@ std::vector<api::Fault> query_faults(const Route& route, const HttpRequest& requ
 }  // namespace
 
 HttpResponse respond(Endpoints& endpoints, const HttpRequest& request) {
-  const std::string_view method = request.method == "HEAD" ? "GET" : request.method;
+  const std::string method = request.method == "HEAD" ? "GET" : request.method;
   std::string allowed;
   for (const Route& route : routes) {
     const std::optional<std::string> id = match(route.pattern, request.path);
