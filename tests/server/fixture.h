@@ -1,0 +1,209 @@
+#pragma once
+
+// A service in a folder of its own, over a renderer that is not there: passes take no time unless
+// told to, and their bits say which pass, seed and pixel they are.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "api/catalog.h"
+#include "renderer/color.h"
+#include "server/artifact_store.h"
+#include "server/data_folder.h"
+#include "server/engine.h"
+#include "server/file.h"
+#include "server/job_service.h"
+#include "server/job_store.h"
+
+namespace translucube::server::test {
+
+inline const std::string config_path = TRANSLUCUBE_SOURCE_DIR "/config/service.json";
+
+class TempFolder {
+ public:
+  TempFolder()
+      : path_(std::filesystem::temp_directory_path() / ("translucube-test-" + random_hex(8))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~TempFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string read_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void write_file(const std::filesystem::path& file, std::string_view bytes) {
+  std::ofstream(file, std::ios::binary).write(bytes.data(), std::ssize(bytes));
+}
+
+/// A request of `samples` samples per pixel of a tiny image: 4 samples make a pass at first.
+inline std::string small_request(int samples, int seed = 1, int size = 8) {
+  return R"({"material":{"cube":{"absorption":0.3,"roughness":0.3,"scattering":0.5}},)"
+         R"("image":{"width":)" +
+         std::to_string(size) + R"(,"height":)" + std::to_string(size) +
+         R"(},"quality":{"samples":)" + std::to_string(samples) + R"(},"seed":)" +
+         std::to_string(seed) + "}";
+}
+
+/// What the fake renderer does and has done.
+struct FakeRenderer {
+  std::atomic<int> passes = 0, builds = 0, tracing = 0, most_tracing = 0;
+  std::atomic<int> milliseconds_per_pass = 0;
+  std::function<void(const Pass&)> before_pass = [](const Pass&) {};  ///< may throw
+  std::function<void(PassFilm&)> after_pass = [](PassFilm&) {};
+  std::function<void(const SceneSpec&)> before_build = [](const SceneSpec&) {};
+
+  Engine engine() {
+    return {[this](const SceneSpec& spec) { return build(spec); },
+            [this](const Scene& scene, const Pass& pass, int, std::stop_token stop) {
+              return trace(scene, pass, stop);
+            },
+            [](const Scene&, const Film& film, double seconds, int threads) {
+              RenderStats stats;
+              stats.samples = film.samples;
+              stats.seconds = seconds;
+              stats.threads = threads;
+              stats.relative_error = relative_error(film);
+              stats.transport = "walk";
+              return stats;
+            }};
+  }
+
+ private:
+  struct Picture {
+    int width, height;
+    std::uint64_t seed;
+  };
+
+  std::shared_ptr<const Scene> build(const SceneSpec& spec) {
+    ++builds;
+    before_build(spec);
+    const auto picture = std::make_shared<Picture>(Picture{spec.width, spec.height, spec.seed});
+    return {picture, reinterpret_cast<const Scene*>(picture.get())};
+  }
+
+  std::optional<PassFilm> trace(const Scene& scene, const Pass& pass, std::stop_token stop) {
+    const auto& picture = reinterpret_cast<const Picture&>(scene);
+    const int now = ++tracing;
+    int most = most_tracing;
+    while (now > most && !most_tracing.compare_exchange_weak(most, now)) {
+    }
+    const struct Leave {
+      std::atomic<int>& count;
+      ~Leave() { --count; }
+    } leave{tracing};
+    before_pass(pass);
+    const auto end =
+        std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds_per_pass.load());
+    while (std::chrono::steady_clock::now() < end && !stop.stop_requested())
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (stop.stop_requested()) return {};
+    PassFilm film;
+    film.width = picture.width;
+    film.height = picture.height;
+    film.pass = pass;
+    for (int i = 0; i < 3 * picture.width * picture.height; ++i)
+      film.sum.push_back(
+          static_cast<float>(pass.count) *
+          (1.0f + 0.1f * static_cast<float>((pass.index * 7 + i + picture.seed) % 11)));
+    film.counters.camera_samples = pass.count;
+    film.cpu_seconds = 0.001;
+    after_pass(film);
+    ++passes;
+    return film;
+  }
+};
+
+struct ServiceOptions {
+  int workers = 1;
+  StoreOptions store;
+};
+
+/// The whole service but its socket.
+class TestService {
+ public:
+  TestService(const std::filesystem::path& folder, Engine engine, ServiceOptions options = {})
+      : catalog(configured(options)),
+        colors(catalog.display_config),
+        data(folder),
+        store(data.store_file(), options.store),
+        artifacts(data.artifacts()),
+        service(catalog, colors, store, artifacts, std::move(engine)) {}
+
+  api::RenderStatus submit(const std::string& document, std::optional<std::string> key = {}) {
+    auto result = service.submit(document, key);
+    if (auto* problem = std::get_if<api::Problem>(&result)) {
+      ADD_FAILURE() << to_text(*problem);
+      return {};
+    }
+    return std::get<Submission>(result).status;
+  }
+
+  api::RenderStatus wait(const std::string& id, int seconds = 20) {
+    auto result = service.wait(id, std::chrono::seconds(seconds));
+    if (auto* problem = std::get_if<api::Problem>(&result)) {
+      ADD_FAILURE() << to_text(*problem);
+      return {};
+    }
+    return std::get<api::RenderStatus>(result);
+  }
+
+  api::JobState state(const std::string& id) {
+    const auto result = service.get(id);
+    return std::get<api::RenderStatus>(result).state;
+  }
+
+  std::string exr(const std::string& id) {
+    auto result = service.image(id, {ImageFormat::exr, {}, {}, {}});
+    if (auto* problem = std::get_if<api::Problem>(&result)) {
+      ADD_FAILURE() << to_text(*problem);
+      return {};
+    }
+    return std::get<ImageFile>(result).file->read_all();
+  }
+
+  api::Catalog catalog;
+  ColorConfig colors;
+  DataFolder data;
+  JobStore store;
+  ArtifactStore artifacts;
+  JobService service;
+
+ private:
+  static api::Catalog configured(const ServiceOptions& options) {
+    api::Catalog catalog = api::load_catalog(config_path);
+    catalog.server.workers = options.workers;
+    catalog.server.threads_per_worker = 1;
+    return catalog;
+  }
+};
+
+/// Waits until `done` or for 20 s; says which.
+inline bool eventually(const std::function<bool()>& done) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+}  // namespace translucube::server::test
