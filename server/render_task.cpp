@@ -173,10 +173,13 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
   hand_.seconds_at_checkpoint = hand_.seconds;
   // A checkpoint lost to a broken disk costs time, not the render.
   while (hand_.film.passes < task.pass.index) {
-    spdlog::warn("render {}: pass {} is traced again", task.job_id, hand_.film.passes);
     const std::optional<Pass> lost = plan_pass(hand_.film.passes, hand_.pixels, total_samples());
     std::optional<PassFilm> pass;
-    if (lost) pass = workshop_.engine.trace(*hand_.scene, *lost, workshop_.threads, stop);
+    if (lost) pass = workshop_.artifacts.read_pass(task.job_id, *lost);
+    if (lost && !pass) {
+      spdlog::warn("render {}: pass {} is traced again", task.job_id, lost->index);
+      pass = workshop_.engine.trace(*hand_.scene, *lost, workshop_.threads, stop);
+    }
     if (!pass) {
       forget();
       workshop_.store.release(task);
@@ -233,7 +236,7 @@ void TaskRunner::retry_later(const Task& task, const std::string& reason) {
   const std::int64_t delay_ms = std::min<std::int64_t>(30'000, 500LL << task.attempts);
   spdlog::warn("render {}: {}; again in {} ms", task.job_id, reason, delay_ms);
   try {
-    workshop_.store.release(task, delay_ms, true);
+    if (!workshop_.store.release(task, delay_ms, true)) tidy(task.job_id);
   } catch (const StoreError& error) {
     spdlog::error("render {}: {}", task.job_id, error.what());
   }
