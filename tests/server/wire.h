@@ -1,0 +1,75 @@
+#pragma once
+
+// Raw bytes over a socket, for what no HTTP client would send.
+
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <string>
+#include <string_view>
+
+#include "server/file.h"
+
+namespace translucube::server::test {
+
+class Wire {
+ public:
+  explicit Wire(int port) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    connected_ =
+        ::connect(socket_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+  }
+
+  /// False where the other side hung up.
+  bool send(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const ssize_t sent = ::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (sent <= 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(sent));
+    }
+    return connected_;
+  }
+
+  /// One answer, headers and body; what came of it by the end of the connection or of the time.
+  std::string receive(int milliseconds = 15'000) {
+    std::string text;
+    while (!whole(text)) {
+      pollfd wait{socket_.get(), POLLIN, 0};
+      if (::poll(&wait, 1, milliseconds) <= 0) break;
+      char buffer[4096];
+      const ssize_t got = ::recv(socket_.get(), buffer, sizeof buffer, 0);
+      if (got <= 0) break;
+      text.append(buffer, static_cast<std::size_t>(got));
+    }
+    return text;
+  }
+
+  /// True if the other side closes the connection in time.
+  bool closed(int milliseconds = 10'000) {
+    pollfd wait{socket_.get(), POLLIN, 0};
+    if (::poll(&wait, 1, milliseconds) <= 0) return false;
+    char byte;
+    return ::recv(socket_.get(), &byte, 1, 0) <= 0;
+  }
+
+ private:
+  static bool whole(const std::string& text) {
+    const auto head = text.find("\r\n\r\n");
+    if (head == text.npos) return false;
+    const std::string name = "Content-Length: ";
+    const auto at = text.find(name);
+    const std::size_t length =
+        at < head ? std::stoul(text.substr(at + name.size(), 20)) : std::size_t(0);
+    return text.size() >= head + 4 + length;
+  }
+
+  FileDescriptor socket_;
+  bool connected_ = false;
+};
+
+}  // namespace translucube::server::test
