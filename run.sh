@@ -75,7 +75,7 @@ request='{
   "material": {"cube": {"absorption": 0.35, "roughness": 0.25, "scattering": 0.35}, "absorber": "red-glass"},
   "scene": {"environment": {"image": "forest"}},
   "image": {"width": 512, "height": 512},
-  "quality": {"relative_error": 0.05}
+  "quality": {"seconds": 20}
 }'
 answer=$(curl --fail-with-body -sS -X POST "$address/v1/renders" -H 'Content-Type: application/json' \
   -H 'Prefer: wait=60' --data "$request") || fail "the render was refused: $answer"
