@@ -40,7 +40,8 @@ mkdir -p out
 log=out/service.log
 serve=(build/release/bin/translucube serve --port "$port")
 if $once; then
-  # Apart from the queue of a service that may be running.
+  # Apart from the queue and the log of a service that may be running.
+  log=out/once.log
   data=$(mktemp -d)
   serve+=(--data "$data")
 fi
