@@ -51,7 +51,8 @@ class SpectralLane {
   std::vector<Operator> table_;
 };
 
-/// Not an absorber but a view: radiance times length, whose mean over a clear image is the mean path.
+/// Not an absorber but a view: radiance times length, whose mean over a clear image is the mean
+/// path.
 struct LengthLane {
   Rgb apply(Rgb radiance, double length) const { return radiance * static_cast<float>(length); }
 };

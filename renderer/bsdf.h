@@ -7,8 +7,6 @@
 // (Nicodemus 1963); in terms of Walter's f: f_basic = f eta_i^2 / eta_o^2. `f_cos` is f_basic times
 // |cos theta_i|.
 
-#include <optional>
-
 #include "renderer/fresnel.h"
 #include "renderer/microfacet.h"
 
@@ -21,6 +19,7 @@ struct SmoothInterface {
 struct RoughInterface {
   double ior = 1.5;
   Ggx microfacets;
+  bool multiple_scattering = true;  ///< false only where tests compare with renderers that lose it
 };
 
 /// One lobe (reflection or transmission) of an interface in one direction.
@@ -28,27 +27,5 @@ struct LobeValue {
   double f_cos = 0;  ///< f_basic |cos theta_i|
   double pdf = 0;  ///< of sample_rough's direction in this lobe, given that both lobes are followed
 };
-
-/// One direction of a lobe; empty where the microfacet sends no light there.
-struct LobeSample {
-  Vec3 wi;
-  double weight = 0;  ///< f_cos / pdf
-  double pdf = 0;     ///< per solid angle
-};
-
-/// Both lobes from one visible microfacet: splitting instead of choosing.
-struct RoughSample {
-  std::optional<LobeSample> reflected, transmitted;
-};
-
-RoughSample sample_rough(const Ggx& ggx, double eta, Vec3 wo, Sample2 u);
-LobeValue rough_reflection(const Ggx& ggx, double eta, Vec3 wo, Vec3 wi);    ///< wi.z > 0
-LobeValue rough_transmission(const Ggx& ggx, double eta, Vec3 wo, Vec3 wi);  ///< wi.z < 0
-
-/// Share of the light from wo that a rough interface reflects and transmits, all directions wi.
-struct DirectionalAlbedo {
-  double reflected = 0, transmitted = 0;
-};
-DirectionalAlbedo directional_albedo(const Ggx& ggx, double eta, double cos_o);
 
 }  // namespace translucube

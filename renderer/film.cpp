@@ -168,7 +168,8 @@ std::vector<float> take(std::string_view& floats, std::size_t count) {
 
 Header header_of(const char (&magic)[8], int width, int height, int lanes) {
   Header header;
-  std::memset(static_cast<void*>(&header), 0, sizeof header);  // padding too: it is part of the checksum
+  std::memset(static_cast<void*>(&header), 0,
+              sizeof header);  // padding too: it is part of the checksum
   std::memcpy(header.magic, magic, sizeof magic);
   header.width = width;
   header.height = height;

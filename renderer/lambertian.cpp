@@ -18,11 +18,11 @@ InterfacedLambertian::InterfacedLambertian(const RoughInterface& interface) : io
   double internal = 0;
   for (int i = 0; i <= nodes; ++i) {
     const double mu = std::max(1e-4, static_cast<double>(i) / nodes);
-    table_[i] = static_cast<float>(directional_albedo(interface.microfacets, ior_, mu).transmitted);
+    table_[i] = static_cast<float>(directional_albedo(interface, ior_, mu).transmitted);
   }
   for (int i = 0; i < nodes; ++i) {
     const double mu = (i + 0.5) / nodes;
-    internal += 2 * mu / nodes * directional_albedo(interface.microfacets, 1 / ior_, mu).reflected;
+    internal += 2 * mu / nodes * directional_albedo(interface, 1 / ior_, mu).reflected;
   }
   norm_ = 1 / (pi * ior_ * ior_ * (1 - internal));
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "renderer/bsdf.h"
+#include "renderer/microsurface.h"
 #include "renderer/sampler.h"
 
 namespace translucube {

@@ -21,23 +21,22 @@ struct Ggx {
     return 1 / (std::numbers::pi * a2 * q * q);
   }
 
-  /// Smith's Lambda (Walter 2007, eq. 34 as G1 = 1 / (1 + Lambda)); even in w.z.
-  double lambda(Vec3 w) const {
-    const double tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
-    const double x = alpha * alpha * tan2;
-    // (sqrt(1 + x) - 1) / 2 without cancellation.
-    return 0.5 * x / (1 + std::sqrt(1 + x));
-  }
-  double g1(Vec3 w) const { return 1 / (1 + lambda(w)); }
-
-  /// Density of the normals that wo sees, per solid angle (Heitz 2014, eq. 2).
-  double visible_d(Vec3 wo, Vec3 m) const {
-    const double cos_m = dot(wo, m);
-    return cos_m <= 0 ? 0 : d(m) * g1(wo) * cos_m / wo.z;
+  /// Microfacet area visible from w per macroscopic area, for w on either side of the macroscopic
+  /// surface: cos_theta (1 + Lambda(w)) (Heitz et al. 2016, section 4.1; Walter 2007, eq. 34).
+  double projected_area(Vec3 w) const {
+    const double q = alpha * alpha * (w.x * w.x + w.y * w.y);
+    const double root = std::sqrt(w.z * w.z + q);
+    return w.z > 0 ? 0.5 * (w.z + root) : 0.5 * q / (root - w.z);  // without cancellation
   }
 
-  /// A visible normal, wo.z > 0 (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with
-  /// Spherical Caps").
+  /// Density of the normals that w sees, per solid angle (Heitz 2014, eq. 2).
+  double visible_d(Vec3 w, Vec3 m) const {
+    const double cos_m = dot(w, m);
+    return cos_m <= 0 ? 0 : d(m) * cos_m / projected_area(w);
+  }
+
+  /// A normal in proportion to visible_d, for w on either side (Dupuy and Benyoub 2023, "Sampling
+  /// Visible GGX Normals with Spherical Caps").
   Vec3 sample_visible(Vec3 wo, Sample2 u) const {
     const Vec3 w = normalize({alpha * wo.x, alpha * wo.y, wo.z});
     const double phi = 2 * std::numbers::pi * u.u;

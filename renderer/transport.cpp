@@ -16,6 +16,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "renderer/microsurface.h"
+
 namespace translucube {
 namespace {
 
@@ -24,6 +26,8 @@ namespace {
 constexpr double roulette_of_clear = 1.0 / 64;
 /// The same for a scattered path, relative to its weight at the first scattering.
 constexpr double roulette_of_scattered = 1.0 / 2;
+/// The same for the light that goes on between microfacets, of what arrived there.
+constexpr double roulette_of_microfacets = 1.0 / 4;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
 /// light that is trapped for good (a camera inside a clear body) gets there.
 constexpr std::uint32_t event_cap = 20'000;
@@ -166,7 +170,7 @@ class Tracer {
   void enter_smooth(Path path) {
     const Vec3 wo = -path.d;
     const double reflectance = fresnel(dot(wo, path.n), interface_.ior);
-    if constexpr (lambertian) enter_lambertian(path, {});
+    if constexpr (lambertian) enter_lambertian(path);
     if (reflectance > 0) leave(path, reflect(wo, path.n), path.weight * reflectance, 0);
     if constexpr (open) {
       if (reflectance == 1) return;
@@ -234,75 +238,70 @@ class Tracer {
   // ---- the rough interface
 
   void enter_rough(Path path) {
-    const Frame frame(path.n);
-    const Vec3 wo = frame.to_local(-path.d);
-    if (wo.z <= 0) return;
-    const RoughSample sample =
-        sample_rough(interface_.microfacets, interface_.ior, wo, path.sampler.next2());
-    if constexpr (lambertian) {
-      enter_lambertian(path, sample.reflected);
-      return;
-    }
-    connect(path, frame, [&](Vec3 wi) {
-      return rough_reflection(interface_.microfacets, interface_.ior, wo, wi);
-    });
-    if (sample.reflected)
-      leave(path, frame.to_world(sample.reflected->wi), path.weight * sample.reflected->weight,
-            sample.reflected->pdf);
-    if constexpr (open) {
-      if (!sample.transmitted) return;
-      path.d = frame.to_world(sample.transmitted->wi);
-      path.weight *= sample.transmitted->weight;
-      path.pdf = 0;
-      if constexpr (scattering) path.roulette = roulette_of_scattered * path.weight;
-      if (survives(path)) walking_.push_back(path);
-    }
+    if constexpr (lambertian) enter_lambertian(path);
+    if (!cross_rough(path, Frame(path.n), interface_.ior, true)) return;
+    if constexpr (scattering) path.roulette = roulette_of_scattered * path.weight;
+    if (survives(path)) walking_.push_back(path);
   }
 
   void leave_rough(Path& path) {
-    const Frame frame(-path.n);
+    if (!cross_rough(path, Frame(-path.n), 1 / interface_.ior, false)) path.weight = 0;
+  }
+
+  /// From microfacet to microfacet: what escapes outwards is sent out, and one of the rays that
+  /// escape into the body stands for all of them (a reservoir of one) and becomes `path`; false if
+  /// there is none.
+  bool cross_rough(Path& path, const Frame& frame, double eta, bool from_outside) {
     const Vec3 wo = frame.to_local(-path.d);
-    const double eta = 1 / interface_.ior;
-    if (wo.z <= 0) {
-      path.weight = 0;
-      return;
+    if (wo.z <= 0) return false;
+    const double arriving = path.weight;
+    Rng& rng = path.sampler.rng();
+    Vec3 inward;
+    double inward_weight = 0;
+    MicroVertex vertex(interface_.microfacets, eta, wo, rng.uniform_positive());
+    while (true) {
+      path.weight = arriving * vertex.weight();
+      connect(path, frame, [&](Vec3 wi) {
+        return (wi.z > 0) == from_outside ? vertex.evaluate(wi) : LobeValue{};
+      });
+      const MicroSample sample = vertex.sample(path.sampler.next2());
+      for (const MicroBranch* branch : {&sample.reflected, &sample.transmitted}) {
+        const double weight = arriving * vertex.weight() * branch->weight * branch->escape;
+        if (weight <= 0) continue;
+        const Vec3 wi = vertex.to_first_side(branch->wi);
+        if ((wi.z > 0) == from_outside) {
+          leave(path, frame.to_world(wi), weight, branch->pdf);
+        } else if (open) {
+          inward_weight += weight;
+          if (rng.uniform() * inward_weight < weight) inward = wi;
+        }
+      }
+      if (!interface_.multiple_scattering) break;
+      vertex.advance(sample, rng.uniform_positive(), rng.uniform_positive());
+      if (vertex.weight() < roulette_of_microfacets) {
+        if (rng.uniform() * roulette_of_microfacets >= vertex.weight()) break;
+        vertex.set_weight(roulette_of_microfacets);
+      }
     }
-    connect(path, frame,
-            [&](Vec3 wi) { return rough_transmission(interface_.microfacets, eta, wo, wi); });
-    const RoughSample sample = sample_rough(interface_.microfacets, eta, wo, path.sampler.next2());
-    if (sample.transmitted)
-      leave(path, frame.to_world(sample.transmitted->wi), path.weight * sample.transmitted->weight,
-            sample.transmitted->pdf);
-    if (sample.reflected) {
-      path.weight *= sample.reflected->weight;
-      path.d = frame.to_world(sample.reflected->wi);
-    } else {
-      path.weight = 0;
-    }
+    if (inward_weight <= 0) return false;
+    path.weight = inward_weight;
+    path.pdf = 0;
+    path.d = frame.to_world(inward);
+    return true;
   }
 
   // ---- the infinitely dense body
 
-  /// Reflection at the interface and by the background, which share their directions' densities.
-  void enter_lambertian(Path& path, const std::optional<LobeSample>& reflected) {
+  /// What the background sends back through the interface.
+  void enter_lambertian(Path& path) {
     const Frame frame(path.n);
     const Vec3 wo = frame.to_local(-path.d);
-    const auto evaluate = [&](Vec3 wi) {
-      LobeValue value = interior_.base.evaluate(wo, wi);
-      if constexpr (!smooth) {
-        const LobeValue r = rough_reflection(interface_.microfacets, interface_.ior, wo, wi);
-        value = {value.f_cos + r.f_cos, value.pdf + r.pdf};
-      }
-      return value;
-    };
+    const auto evaluate = [&](Vec3 wi) { return interior_.base.evaluate(wo, wi); };
     connect(path, frame, evaluate);
-    const auto follow = [&](Vec3 wi) {
-      const LobeValue value = evaluate(wi);
-      if (value.f_cos > 0)
-        leave(path, frame.to_world(wi), path.weight * value.f_cos / value.pdf, value.pdf);
-    };
-    follow(InterfacedLambertian::sample(path.sampler.next2()));
-    if (reflected) follow(reflected->wi);
+    const Vec3 wi = InterfacedLambertian::sample(path.sampler.next2());
+    const LobeValue value = evaluate(wi);
+    if (value.f_cos > 0)
+      leave(path, frame.to_world(wi), path.weight * value.f_cos / value.pdf, value.pdf);
   }
 
   // ---- between stages
