@@ -26,8 +26,10 @@ namespace {
 constexpr double roulette_of_clear = 1.0 / 64;
 /// The same for a scattered path, relative to its weight at the first scattering.
 constexpr double roulette_of_scattered = 1.0 / 2;
+/// The same inside a clear body under a rough interface.
+constexpr double roulette_of_rough = 1.0 / 8;
 /// The same for the light that goes on between microfacets, of what arrived there.
-constexpr double roulette_of_microfacets = 1.0 / 4;
+constexpr double roulette_of_microfacets = 1.0 / 2;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
 /// light that is trapped for good (a camera inside a clear body) gets there.
 constexpr std::uint32_t event_cap = 20'000;
@@ -240,7 +242,7 @@ class Tracer {
   void enter_rough(Path path) {
     if constexpr (lambertian) enter_lambertian(path);
     if (!cross_rough(path, Frame(path.n), interface_.ior, true)) return;
-    if constexpr (scattering) path.roulette = roulette_of_scattered * path.weight;
+    path.roulette = (scattering ? roulette_of_scattered : roulette_of_rough) * path.weight;
     if (survives(path)) walking_.push_back(path);
   }
 
