@@ -55,6 +55,7 @@ TEST(Request, ImageHasAtMostTheLimitOfPixels) {
   EXPECT_EQ(accepted(image("1", "16777216")).height, 16777216);
   EXPECT_EQ(fault_at("/image", image("4096", "4097")), "width x height must be at most 16777216");
   fault_at("/image", image("100000", "100000"));
+  fault_at("/image", image("65536", "65536"));  // 2^32: no pixels at all in 32 bits
   // The other side keeps its default.
   fault_at("/image", request_with(R"("image":{"width":100000})"));
 }
