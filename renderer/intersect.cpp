@@ -123,6 +123,11 @@ bool Mesh::inside(Vec3 p) const {
          dot(hit.n, d) > 0;
 }
 
+double Mesh::clearance(Vec3) const {
+  // Any bound is a valid one; a query for the nearest face costs more than the flights it saves.
+  return 0;
+}
+
 BuiltMesh build_mesh(const TriangleMesh& mesh) {
   Vec3 low = mesh.vertices[0], high = low;
   for (const Vec3& v : mesh.vertices) {

@@ -21,12 +21,14 @@ struct Hit {
 ///   enter(p, d, hit)          first hit of a ray outside, towards the surface's front
 ///   exit(p, d, t_max, hit)    the hit of a ray inside if it is nearer than t_max
 ///   inside(p)                 whether a point lies in the body
+///   clearance(p)              a lower bound of the distance of a point inside to the surface
 /// and `convex`: whether a ray that leaves can never come back.
 
 struct Sphere {
   static constexpr bool convex = true;
 
   bool inside(Vec3 p) const { return length_squared(p) < 1; }
+  double clearance(Vec3 p) const { return 0.5 * (1 - length_squared(p)); }
 
   bool enter(Vec3 p, Vec3 d, Hit& hit) const {
     const double b = dot(p, d);
@@ -57,6 +59,7 @@ struct Slab {
   static constexpr bool convex = true;
 
   bool inside(Vec3 p) const { return std::fabs(p.z) < 0.5; }
+  double clearance(Vec3 p) const { return 0.5 - std::fabs(p.z); }
 
   bool enter(Vec3 p, Vec3 d, Hit& hit) const {
     const double side = std::copysign(0.5, p.z);
@@ -94,6 +97,7 @@ class Mesh {
   explicit Mesh(std::shared_ptr<const MeshGeometry> geometry) : geometry_(std::move(geometry)) {}
 
   bool inside(Vec3 p) const;
+  double clearance(Vec3 p) const;
   bool enter(Vec3 p, Vec3 d, Hit& hit) const;
   bool exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const;
 

@@ -16,6 +16,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "renderer/ball_tables.h"
 #include "renderer/microsurface.h"
 
 namespace translucube {
@@ -135,7 +136,7 @@ class Tracer {
             path.p = path.p + flight * path.d;
             path.length += flight;
             if (strayed(path)) break;
-            path.d = medium.scatter(path.d, rng);
+            scatter(path, rng);
           }
           if (strayed(path)) {
             give_up(path);
@@ -150,6 +151,24 @@ class Tracer {
       }
     }
     walking_.clear();
+  }
+
+  /// A new direction; deep inside after one large step to the surface of the largest ball that
+  /// fits.
+  void scatter(Path& path, Rng& rng) {
+    const Medium& medium = interior_.medium;
+    if (medium.g == 0) {
+      const int level = ball_level(shape_.clearance(path.p) * medium.sigma_s);
+      if (level >= 0) {
+        const BallCrossing crossing = cross_ball(level, rng);
+        path.p = path.p + (ball_radius(level) / medium.sigma_s) * crossing.outward;
+        path.d = crossing.direction;
+        path.length += crossing.length / medium.sigma_s;
+        ++tile_.counters.flights;
+        return;
+      }
+    }
+    path.d = medium.scatter(path.d, rng);
   }
 
   /// Paths inside at the boundary: what leaves is collected with its weight, what stays walks on.
@@ -221,7 +240,7 @@ class Tracer {
       scattered.roulette = roulette_of_scattered * scattered_weight;
       scattered.sampler = path.sampler.split();
       note("scatter", scattered);
-      scattered.d = interior_.medium.scatter(scattered.d, scattered.sampler.rng());
+      scatter(scattered, scattered.sampler.rng());
       walking_.push_back(scattered);
     }
   }
