@@ -65,11 +65,12 @@ std::vector<Exit> simulate(double radius, const std::vector<Table>& below, std::
   return exits;
 }
 
-/// Equally likely representatives: strata of mu, in each the mean of equal shares in order of
-/// length; so the means over the table are those of the simulation.
+/// Equally likely representatives: one drawn from each equal share, in order of length, of each
+/// stratum of mu.
 Table represent(std::vector<Exit> exits, int level) {
   constexpr int strata = 64, shares = exits_per_ball / strata;
   constexpr int per_stratum = walks_per_level / strata, per_share = per_stratum / shares;
+  Rng rng(hash_combine(0x7ab1e, level));
   std::ranges::sort(exits, {}, &Exit::mu);
   Table table;
   for (int s = 0; s < strata; ++s) {
@@ -77,19 +78,18 @@ Table represent(std::vector<Exit> exits, int level) {
     std::sort(begin, begin + per_stratum,
               [](const Exit& a, const Exit& b) { return a.length < b.length; });
     for (int share = 0; share < shares; ++share) {
-      Exit sum{0, 0};
-      for (int i = 0; i < per_share; ++i) {
-        sum.mu += begin[share * per_share + i].mu / per_share;
-        sum.length += begin[share * per_share + i].length / per_share;
-      }
-      table.push_back({static_cast<float>(sum.mu), static_cast<float>(sum.length)});
+      const Exit& drawn = begin[share * per_share + static_cast<int>(rng.bits() % per_share)];
+      table.push_back({static_cast<float>(drawn.mu), static_cast<float>(drawn.length)});
     }
   }
-  // What is left of the noise in the mean would add up over a walk.
-  double mean = 0;
-  for (const BallExit& exit : table) mean += exit.length / table.size();
-  for (BallExit& exit : table)
-    exit.length = static_cast<float>(exit.length * mean_ball_length(level) / mean);
+  // The noise left in the mean would add up over a walk. In the smallest balls much of the light
+  // crosses unscattered, in a length that is known, and there is little noise.
+  if (level >= 3) {
+    double mean = 0;
+    for (const BallExit& exit : table) mean += exit.length / table.size();
+    for (BallExit& exit : table)
+      exit.length = static_cast<float>(exit.length * mean_ball_length(level) / mean);
+  }
   return table;
 }
 

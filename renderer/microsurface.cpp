@@ -104,19 +104,12 @@ DirectionalAlbedo directional_albedo(const RoughInterface& interface, double eta
   const Vec3 wo{std::sqrt(std::fmax(0.0, 1 - cos_o * cos_o)), 0, cos_o};
   DirectionalAlbedo albedo;
   for (std::uint32_t i = 0; i < n; ++i) {
-    Rng rng(hash_combine(0x5eed, i));
-    MicroVertex vertex(interface.microfacets, eta, wo, 1 - owen_sobol2(i, 0x5eed, 1).u);
-    Sample2 u = owen_sobol2(i, 0x5eed, 0);
-    while (vertex.weight() > 1e-4) {
-      const MicroSample s = vertex.sample(u);
-      for (const MicroBranch* branch : {&s.reflected, &s.transmitted}) {
-        const double out = vertex.weight() * branch->weight * branch->escape;
-        (vertex.to_first_side(branch->wi).z > 0 ? albedo.reflected : albedo.transmitted) += out;
-      }
-      if (!interface.multiple_scattering) break;
-      vertex.advance(s, rng.uniform_positive(), rng.uniform_positive());
-      u = rng.uniform2();
-    }
+    PathSampler sampler(0x5eed, i);
+    cross_microsurface(
+        interface, eta, wo, sampler, [](const MicroVertex&) {},
+        [&](Vec3 wi, double weight, double) {
+          (wi.z > 0 ? albedo.reflected : albedo.transmitted) += weight;
+        });
   }
   return {albedo.reflected / n, albedo.transmitted / n};
 }

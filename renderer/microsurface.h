@@ -63,6 +63,33 @@ class MicroVertex {
   bool crossed_ = false;
 };
 
+/// Below this share of the light that arrived, chance decides whether it goes on to another
+/// microfacet (chosen by relMSE x CPU).
+inline constexpr double roulette_of_microfacets = 1.0 / 2;
+
+/// Crosses the interface from `wo`, collision by collision: `connect(vertex)` may look for light
+/// from a direction of its own, `escape(wi, weight, pdf)` receives every ray that leaves the
+/// surface on either side, wi in the frame of the first side. The expected sum of all weights is 1.
+template <class Connect, class Escape>
+void cross_microsurface(const RoughInterface& interface, double eta, Vec3 wo, PathSampler& sampler,
+                        Connect&& connect, Escape&& escape) {
+  Rng& rng = sampler.rng();
+  MicroVertex vertex(interface.microfacets, eta, wo, rng.uniform_positive());
+  while (true) {
+    connect(vertex);
+    const MicroSample sample = vertex.sample(sampler.next2());
+    for (const MicroBranch* branch : {&sample.reflected, &sample.transmitted}) {
+      const double weight = vertex.weight() * branch->weight * branch->escape;
+      if (weight > 0) escape(vertex.to_first_side(branch->wi), weight, branch->pdf);
+    }
+    if (!interface.multiple_scattering) return;
+    vertex.advance(sample, rng.uniform_positive(), rng.uniform_positive());
+    if (vertex.weight() >= roulette_of_microfacets) continue;
+    if (rng.uniform() * roulette_of_microfacets >= vertex.weight()) return;
+    vertex.set_weight(roulette_of_microfacets);
+  }
+}
+
 /// Share of the light from cos_o that the surface reflects and transmits; they sum to 1.
 struct DirectionalAlbedo {
   double reflected = 0, transmitted = 0;

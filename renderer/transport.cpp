@@ -16,8 +16,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "renderer/ball_tables.h"
 #include "renderer/microsurface.h"
+#include "renderer/walk.h"
 
 namespace translucube {
 namespace {
@@ -29,18 +29,14 @@ constexpr double roulette_of_clear = 1.0 / 64;
 constexpr double roulette_of_scattered = 1.0 / 2;
 /// The same inside a clear body under a rough interface.
 constexpr double roulette_of_rough = 1.0 / 8;
-/// The same for the light that goes on between microfacets, of what arrived there.
-constexpr double roulette_of_microfacets = 1.0 / 2;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
 /// light that is trapped for good (a camera inside a clear body) gets there.
 constexpr std::uint32_t event_cap = 20'000;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Path {
-  Vec3 p, d;          ///< position, direction of travel
-  Vec3 n;             ///< outward normal, at the boundary
-  double length = 0;  ///< inside the body so far
+struct Path : Particle {
+  Vec3 n;  ///< outward normal, at the boundary
   double weight = 1;
   double roulette = roulette_of_clear;  ///< weight below which chance decides
   double pdf = 0;  ///< of d, where connect() had a chance to find it too; 0: none had
@@ -127,17 +123,12 @@ class Tracer {
       for (Path& path : walking_) {
         Hit hit;
         if constexpr (scattering) {
-          const Medium& medium = interior_.medium;
-          Rng& rng = path.sampler.rng();
-          while (true) {
-            const double flight = medium.sample_flight(rng);
+          while (fly(shape_, interior_.medium, path, path.sampler.rng(), hit)) {
             ++tile_.counters.flights;
-            if (shape_.exit(path.p, path.d, flight, hit)) break;
-            path.p = path.p + flight * path.d;
-            path.length += flight;
             if (strayed(path)) break;
-            scatter(path, rng);
+            scatter(shape_, interior_.medium, path, path.sampler.rng());
           }
+          ++tile_.counters.flights;
           if (strayed(path)) {
             give_up(path);
             continue;
@@ -151,24 +142,6 @@ class Tracer {
       }
     }
     walking_.clear();
-  }
-
-  /// A new direction; deep inside after one large step to the surface of the largest ball that
-  /// fits.
-  void scatter(Path& path, Rng& rng) {
-    const Medium& medium = interior_.medium;
-    if (medium.g == 0) {
-      const int level = ball_level(shape_.clearance(path.p) * medium.sigma_s);
-      if (level >= 0) {
-        const BallCrossing crossing = cross_ball(level, rng);
-        path.p = path.p + (ball_radius(level) / medium.sigma_s) * crossing.outward;
-        path.d = crossing.direction;
-        path.length += crossing.length / medium.sigma_s;
-        ++tile_.counters.flights;
-        return;
-      }
-    }
-    path.d = medium.scatter(path.d, rng);
   }
 
   /// Paths inside at the boundary: what leaves is collected with its weight, what stays walks on.
@@ -240,7 +213,7 @@ class Tracer {
       scattered.roulette = roulette_of_scattered * scattered_weight;
       scattered.sampler = path.sampler.split();
       note("scatter", scattered);
-      scatter(scattered, scattered.sampler.rng());
+      scatter(shape_, interior_.medium, scattered, scattered.sampler.rng());
       walking_.push_back(scattered);
     }
   }
@@ -279,31 +252,23 @@ class Tracer {
     Rng& rng = path.sampler.rng();
     Vec3 inward;
     double inward_weight = 0;
-    MicroVertex vertex(interface_.microfacets, eta, wo, rng.uniform_positive());
-    while (true) {
-      path.weight = arriving * vertex.weight();
-      connect(path, frame, [&](Vec3 wi) {
-        return (wi.z > 0) == from_outside ? vertex.evaluate(wi) : LobeValue{};
-      });
-      const MicroSample sample = vertex.sample(path.sampler.next2());
-      for (const MicroBranch* branch : {&sample.reflected, &sample.transmitted}) {
-        const double weight = arriving * vertex.weight() * branch->weight * branch->escape;
-        if (weight <= 0) continue;
-        const Vec3 wi = vertex.to_first_side(branch->wi);
-        if ((wi.z > 0) == from_outside) {
-          leave(path, frame.to_world(wi), weight, branch->pdf);
-        } else if (open) {
-          inward_weight += weight;
-          if (rng.uniform() * inward_weight < weight) inward = wi;
-        }
-      }
-      if (!interface_.multiple_scattering) break;
-      vertex.advance(sample, rng.uniform_positive(), rng.uniform_positive());
-      if (vertex.weight() < roulette_of_microfacets) {
-        if (rng.uniform() * roulette_of_microfacets >= vertex.weight()) break;
-        vertex.set_weight(roulette_of_microfacets);
-      }
-    }
+    cross_microsurface(
+        interface_, eta, wo, path.sampler,
+        [&](const MicroVertex& vertex) {
+          path.weight = arriving * vertex.weight();
+          connect(path, frame, [&](Vec3 wi) {
+            return (wi.z > 0) == from_outside ? vertex.evaluate(wi) : LobeValue{};
+          });
+        },
+        [&](Vec3 wi, double share, double pdf) {
+          const double weight = arriving * share;
+          if ((wi.z > 0) == from_outside) {
+            leave(path, frame.to_world(wi), weight, pdf);
+          } else if (open) {
+            inward_weight += weight;
+            if (rng.uniform() * inward_weight < weight) inward = wi;
+          }
+        });
     if (inward_weight <= 0) return false;
     path.weight = inward_weight;
     path.pdf = 0;

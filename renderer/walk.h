@@ -1,0 +1,45 @@
+#pragma once
+
+// The random walk in a homogeneous body, collision by collision.
+
+#include "renderer/ball_tables.h"
+#include "renderer/medium.h"
+#include "renderer/shapes.h"
+
+namespace translucube {
+
+/// What moves inside a body, in the body's unit of length.
+struct Particle {
+  Vec3 p, d;          ///< position, direction of travel
+  double length = 0;  ///< inside the body so far
+};
+
+/// One free flight. True at the next collision; false where the boundary comes first: then `hit` is
+/// on it and the particle still at its start.
+template <class Shape>
+bool fly(const Shape& shape, const Medium& medium, Particle& particle, Rng& rng, Hit& hit) {
+  const double flight = medium.sample_flight(rng);
+  if (shape.exit(particle.p, particle.d, flight, hit)) return false;
+  particle.p = particle.p + flight * particle.d;
+  particle.length += flight;
+  return true;
+}
+
+/// A collision: a new direction; deep inside an isotropic medium after one large step to the
+/// surface of the largest ball that fits.
+template <class Shape>
+void scatter(const Shape& shape, const Medium& medium, Particle& particle, Rng& rng) {
+  if (medium.g == 0) {
+    const int level = ball_level(shape.clearance(particle.p) * medium.sigma_s);
+    if (level >= 0) {
+      const BallCrossing crossing = cross_ball(level, rng);
+      particle.p = particle.p + (ball_radius(level) / medium.sigma_s) * crossing.outward;
+      particle.d = crossing.direction;
+      particle.length += crossing.length / medium.sigma_s;
+      return;
+    }
+  }
+  particle.d = medium.scatter(particle.d, rng);
+}
+
+}  // namespace translucube
