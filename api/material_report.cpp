@@ -75,7 +75,10 @@ std::string material_report(const RenderRequest& request, const Catalog& catalog
   // The cube as it was given where it was: no rounding from going there and back.
   const auto* given = std::get_if<CubePoint>(&request.material.point);
   const CubePoint cube = given ? *given : to_cube(material.coefficients, material.g, d);
-  const DerivedOptics optics = derived_optics(material.coefficients, material.g);
+  DerivedOptics optics = derived_optics(material.coefficients, material.g);
+  // Pigments keep their albedo at any density, none and infinite included.
+  if (material.absorption_per_scattering)
+    optics.albedo_at_peak = 1 / (1 + *material.absorption_per_scattering);
   return json{{"cube",
                {{"absorption", cube.absorption},
                 {"roughness", cube.roughness},

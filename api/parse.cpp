@@ -44,8 +44,6 @@ void read_quality(const json& value, const std::string& pointer, const Limits& l
 
 /// Parts of the contract that this version reads and checks but does not serve.
 void refuse_what_is_not_served_yet(const RenderRequest& request, Faults& faults) {
-  if (request.material.pigment_absorption_per_scattering)
-    faults.add("/material/pigment", "pigments are not served by this version yet");
   if (request.model == Model::dipole)
     faults.add("/model", "the dipole model is not served by this version yet");
   if (request.explorable)

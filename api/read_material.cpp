@@ -158,6 +158,10 @@ void read_material(const json& value, const std::string& pointer, const Catalog&
   if (const json* pigment = material.find("pigment"))
     read_pigment(*pigment, material.pointer_to("pigment"), out.pigment_absorption_per_scattering,
                  faults);
+  const auto* given = std::get_if<CoefficientsRequest>(&out.point);
+  if (out.pigment_absorption_per_scattering && given != nullptr &&
+      given->sigma_a != std::variant<std::array<double, 3>, double>{0.0})
+    material.fault("pigment", "scatterers that absorb give the absorption: sigma_a_peak must be 0");
   material.refuse_unknown_keys();
 }
 

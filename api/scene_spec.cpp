@@ -32,7 +32,7 @@ Absorber absorber_of(const AbsorberRequest& absorber, const Catalog& catalog) {
                     absorber);
 }
 
-Material material_of(const MaterialRequest& request, const Catalog& catalog) {
+Material without_pigment(const MaterialRequest& request, const Catalog& catalog) {
   Material material;
   material.g = request.anisotropy;
   material.ior = request.ior;
@@ -53,6 +53,16 @@ Material material_of(const MaterialRequest& request, const Catalog& catalog) {
   const double peak = *std::max_element(channels.begin(), channels.end());
   material.coefficients.sigma_a_peak = peak;
   material.absorber = peak > 0 ? normalized(RgbAbsorber{channels}) : RgbAbsorber{};
+  return material;
+}
+
+Material material_of(const MaterialRequest& request, const Catalog& catalog) {
+  Material material = without_pigment(request, catalog);
+  const std::optional<double>& ratio = request.pigment_absorption_per_scattering;
+  if (!ratio) return material;
+  // The scatterers absorb: their density gives both coefficients.
+  material.absorption_per_scattering = ratio;
+  material.coefficients.sigma_a_peak = *ratio > 0 ? *ratio * material.coefficients.sigma_s : 0;
   return material;
 }
 

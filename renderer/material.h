@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -41,6 +42,9 @@ struct Material {
   double g = 0;      ///< Henyey-Greenstein mean cosine, (-1, 1)
   double ior = 1.5;  ///< index of the body relative to the vacuum around it, [1, 4]
   Absorber absorber;
+  /// Pigments: the scatterers are the absorbers, sigma_a(lambda) = sigma_s x this x k(lambda), and
+  /// coefficients.sigma_a_peak says the same. As sigma_s grows without bound the albedo stays.
+  std::optional<double> absorption_per_scattering;
 };
 
 }  // namespace translucube

@@ -47,6 +47,8 @@ Interface make_interface(const Material& material) {
 }
 
 Interior make_interior(const Material& material, double unit_mm) {
+  if (material.absorption_per_scattering && std::isinf(material.coefficients.sigma_s))
+    return DensePigmentInterior{Medium{1, material.g}};
   // Where both are infinite, absorption wins: the body is black.
   if (std::isinf(material.coefficients.sigma_a_peak)) return BlackInterior{};
   if (std::isinf(material.coefficients.sigma_s))
@@ -54,6 +56,18 @@ Interior make_interior(const Material& material, double unit_mm) {
                                          make_interface(material))};
   if (material.coefficients.sigma_s == 0) return ClearInterior{};
   return ScatteringInterior{Medium{material.coefficients.sigma_s * unit_mm, material.g}};
+}
+
+Lane make_lane(const Material& material, const Interior& interior, double unit_mm) {
+  if (std::holds_alternative<DensePigmentInterior>(interior)) {
+    Material pigment = material;
+    pigment.coefficients.sigma_a_peak = *material.absorption_per_scattering;
+    return make_lane(pigment, 1.0);
+  }
+  // Light that only touches an opaque body has no length inside it.
+  const bool opaque = std::holds_alternative<BlackInterior>(interior) ||
+                      std::holds_alternative<LambertianInterior>(interior);
+  return opaque ? Lane{ClearLane{}} : make_lane(material, unit_mm);
 }
 
 void check_mesh(const std::filesystem::path& file) {
@@ -82,12 +96,11 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec) {
                          spec.camera.up, spec.camera.vfov_deg, spec.width, spec.height);
   scene->camera_inside =
       std::visit([&](const auto& s) { return s.inside(scene->camera.position); }, scene->shape);
-  const bool opaque = std::holds_alternative<BlackInterior>(scene->interior) ||
-                      std::holds_alternative<LambertianInterior>(scene->interior);
-  if (scene->camera_inside && opaque)
+  const bool open = std::holds_alternative<ClearInterior>(scene->interior) ||
+                    std::holds_alternative<ScatteringInterior>(scene->interior);
+  if (scene->camera_inside && !open)
     throw SceneError(SceneError::Part::camera, "the camera is inside an opaque body");
-  // Light that only touches an opaque body has no length inside it.
-  scene->lanes = {opaque ? Lane{ClearLane{}} : make_lane(spec.material, unit)};
+  scene->lanes = {make_lane(spec.material, scene->interior, unit)};
   return scene;
 }
 
@@ -96,6 +109,7 @@ std::string transport_name(const Scene& scene) {
     std::string operator()(const BlackInterior&) const { return "interface"; }
     std::string operator()(const ClearInterior&) const { return "clear"; }
     std::string operator()(const ScatteringInterior&) const { return "walk"; }
+    std::string operator()(const DensePigmentInterior&) const { return "half-space-walk"; }
     std::string operator()(const LambertianInterior&) const { return "interfaced-lambertian"; }
   };
   return std::visit(Name{}, scene.interior);

@@ -24,13 +24,18 @@ struct ClearInterior {};  ///< s = 0: interface events only
 struct ScatteringInterior {
   Medium medium;  ///< 0 < s < 1: random walk
 };
+struct DensePigmentInterior {
+  Medium medium;  ///< s = 1 with pigments: a half space below each point of the surface, lengths in
+                  ///< mean free paths of scattering
+};
 struct LambertianInterior {
   InterfacedLambertian base;  ///< s = 1: closed form
 };
 
 using Shape = std::variant<Sphere, Slab, Mesh>;
 using Interface = std::variant<SmoothInterface, RoughInterface>;
-using Interior = std::variant<BlackInterior, ClearInterior, ScatteringInterior, LambertianInterior>;
+using Interior = std::variant<BlackInterior, ClearInterior, ScatteringInterior,
+                              DensePigmentInterior, LambertianInterior>;
 
 struct Scene {
   int width = 0, height = 0;
@@ -48,5 +53,7 @@ struct Scene {
 /// The optics of a material for a body with this unit.
 Interface make_interface(const Material& material);
 Interior make_interior(const Material& material, double unit_mm);
+/// The material's lane in the lengths that the interior's paths bring.
+Lane make_lane(const Material& material, const Interior& interior, double unit_mm);
 
 }  // namespace translucube

@@ -49,8 +49,9 @@ class Tracer {
   static constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
   static constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
   static constexpr bool lambertian = std::is_same_v<Interior, LambertianInterior>;
+  static constexpr bool dense = std::is_same_v<Interior, DensePigmentInterior>;
   /// Whether light goes on inside the body.
-  static constexpr bool open = scattering || std::is_same_v<Interior, ClearInterior>;
+  static constexpr bool open = scattering || dense || std::is_same_v<Interior, ClearInterior>;
 
  public:
   Tracer(const Scene& scene, const Shape& shape, const Interface& interface,
@@ -89,10 +90,11 @@ class Tracer {
         path.d = scene_.camera.direction(px + u.u, py + u.v);
         note("emit", path);
         ++tile_.counters.camera_samples;
-        if (scene_.camera_inside)
-          inward(path);
-        else
+        if (!scene_.camera_inside) {
           arriving_.push_back(path);
+        } else if constexpr (open) {
+          inward(path);
+        }
       }
   }
 
@@ -122,18 +124,7 @@ class Tracer {
     if constexpr (open) {
       for (Path& path : walking_) {
         Hit hit;
-        if constexpr (scattering) {
-          while (fly(shape_, interior_.medium, path, path.sampler.rng(), hit)) {
-            ++tile_.counters.flights;
-            if (strayed(path)) break;
-            scatter(shape_, interior_.medium, path, path.sampler.rng());
-          }
-          ++tile_.counters.flights;
-          if (strayed(path)) {
-            give_up(path);
-            continue;
-          }
-        } else if (!shape_.exit(path.p, path.d, infinity, hit)) {
+        if (!cross_body(path, hit)) {
           give_up(path);
           continue;
         }
@@ -142,6 +133,37 @@ class Tracer {
       }
     }
     walking_.clear();
+  }
+
+  /// To the boundary; false for a path that lost its way.
+  bool cross_body(Path& path, Hit& hit) {
+    if constexpr (scattering) {
+      return walk_to_boundary(shape_, interior_.medium, path, path.sampler.rng(), hit);
+    } else if constexpr (dense) {
+      // In the half space below the point where it entered, to leave at that very point.
+      const Frame frame(path.n);
+      Particle below{{}, frame.to_local(path.d), path.length};
+      walk_to_boundary(HalfSpace{}, interior_.medium, below, path.sampler.rng(), hit);
+      path.d = frame.to_world(below.d);
+      path.length = below.length;
+      hit.p = path.p;
+      hit.n = path.n;
+      return true;
+    } else {
+      return shape_.exit(path.p, path.d, infinity, hit);
+    }
+  }
+
+  template <class Place>
+  bool walk_to_boundary(const Place& place, const Medium& medium, Particle& particle, Rng& rng,
+                        Hit& hit) {
+    ++tile_.counters.flights;
+    while (fly(place, medium, particle, rng, hit)) {
+      ++tile_.counters.flights;
+      if (strayed(particle)) return false;
+      scatter(place, medium, particle, rng);
+    }
+    return true;
   }
 
   /// Paths inside at the boundary: what leaves is collected with its weight, what stays walks on.
@@ -171,7 +193,7 @@ class Tracer {
       path.d = *refract(wo, path.n, interface_.ior);
       path.weight *= 1 - reflectance;
       path.pdf = 0;
-      if (survives(path)) follow_unscattered(path);
+      inward(path);
     }
   }
 
@@ -234,8 +256,7 @@ class Tracer {
   void enter_rough(Path path) {
     if constexpr (lambertian) enter_lambertian(path);
     if (!cross_rough(path, Frame(path.n), interface_.ior, true)) return;
-    path.roulette = (scattering ? roulette_of_scattered : roulette_of_rough) * path.weight;
-    if (survives(path)) walking_.push_back(path);
+    if constexpr (open) inward(path);
   }
 
   void leave_rough(Path& path) {
@@ -309,13 +330,15 @@ class Tracer {
     collect(path, light.value.radiance, path.weight * value.f_cos / (light.value.pdf + value.pdf));
   }
 
-  /// Into the body, from a camera inside it.
+  /// Into the body.
   void inward(Path& path) {
-    if constexpr (open) {
-      if constexpr (smooth)
-        follow_unscattered(path);
-      else
-        walking_.push_back(path);
+    if (!survives(path)) return;
+    if constexpr (smooth && !dense) {
+      follow_unscattered(path);
+    } else {
+      path.roulette =
+          (scattering || dense ? roulette_of_scattered : roulette_of_rough) * path.weight;
+      walking_.push_back(path);
     }
   }
 
@@ -390,8 +413,8 @@ class Tracer {
   }
 
   /// A path that slipped out of a mesh by rounding would walk for ever.
-  static bool strayed(const Path& path) {
-    if constexpr (std::is_same_v<Shape, Mesh>) return length_squared(path.p) > 1.01;
+  static bool strayed(const Particle& particle) {
+    if constexpr (std::is_same_v<Shape, Mesh> && !dense) return length_squared(particle.p) > 1.01;
     return false;
   }
 

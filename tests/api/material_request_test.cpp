@@ -119,11 +119,15 @@ TEST(MaterialRequest, SpectrumTellsWhereItsWavelengthsStopRising) {
             "must rise strictly; it does not after index 1");
 }
 
-TEST(MaterialRequest, PigmentsAreReadButNotServedYet) {
-  EXPECT_THAT(fault_at("/material/pigment",
-                       material_with(R"("pigment":{"absorption_per_scattering":0.1})")),
-              HasSubstr("not served by this version"));
-  accepted(material_with(R"("pigment":false)"));
+TEST(MaterialRequest, PigmentsTakeTheirAbsorptionFromTheScattering) {
+  const auto material =
+      accepted(material_with(R"("pigment":{"absorption_per_scattering":0.1})")).material;
+  EXPECT_EQ(material.pigment_absorption_per_scattering, 0.1);
+  EXPECT_FALSE(accepted(material_with(R"("pigment":false)"))
+                   .material.pigment_absorption_per_scattering.has_value());
+  const std::string coefficients =
+      R"({"material":{"coefficients":{"alpha":0,"sigma_s":2,"sigma_a_peak":1},"pigment":{"absorption_per_scattering":0.1}}})";
+  EXPECT_THAT(fault_at("/material/pigment", coefficients), HasSubstr("sigma_a_peak must be 0"));
 }
 
 TEST(MaterialRequest, MinusZeroIsZero) {
