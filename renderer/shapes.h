@@ -24,8 +24,27 @@ struct Hit {
 ///   clearance(p)              a lower bound of the distance of a point inside to the surface
 /// and `convex`: whether a ray that leaves can never come back.
 
+///
+/// A sphere also rolls: every chord of a ray that is totally reflected inside is the same, so the
+/// light that is trapped in a thin medium needs no loop over its reflections.
+
 struct Sphere {
   static constexpr bool convex = true;
+
+  /// Moves a ray that starts at the surface (p unit) inward along d by a distance, reflected
+  /// wherever it meets the surface.
+  static void roll(Vec3& p, Vec3& d, double distance) {
+    const double cosine = std::fmax(-dot(p, d), 1e-150);
+    const Vec3 along = d + cosine * p;
+    const double sine = length(along);
+    if (sine == 0) return;  // back and forth through the centre: never totally reflected
+    const Vec3 n = p, t = along * (1 / sine);
+    const double chord = 2 * cosine, chords = std::floor(distance / chord);
+    const double angle = chords * 2 * std::atan2(cosine, sine);
+    p = std::cos(angle) * n + std::sin(angle) * t;
+    d = sine * (std::cos(angle) * t - std::sin(angle) * n) - cosine * p;
+    p = p + (distance - chords * chord) * d;
+  }
 
   bool inside(Vec3 p) const { return length_squared(p) < 1; }
   double clearance(Vec3 p) const { return 0.5 * (1 - length_squared(p)); }

@@ -30,8 +30,9 @@ constexpr double roulette_of_scattered = 1.0 / 2;
 /// The same inside a clear body under a rough interface.
 constexpr double roulette_of_rough = 1.0 / 8;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
-/// light that is trapped for good (a camera inside a clear body) gets there.
-constexpr std::uint32_t event_cap = 20'000;
+/// light that is trapped gets there, for good (a camera inside a clear body) or, in a mesh, for
+/// nearly as long (a medium of millions of bounding radii to the mean free path).
+constexpr std::uint32_t clear_event_cap = 20'000, scattering_event_cap = 2'000'000;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -226,13 +227,22 @@ class Tracer {
       }
       arrive_inside(path, hit);
       if (!count_event(path)) break;
+      if (traps(path)) {
+        scattered_weight += path.weight;
+        if (rng.uniform() * scattered_weight < path.weight) {
+          scattered = path;
+          roll(scattered);
+        }
+        break;
+      }
       leave_smooth(path);
       if (!survives(path)) break;
     }
     if constexpr (scattering) {
       if (scattered_weight <= 0) return;
       scattered.weight = scattered_weight;
-      scattered.roulette = roulette_of_scattered * scattered_weight;
+      if (!survives(scattered)) return;
+      scattered.roulette = roulette_of_scattered * scattered.weight;
       scattered.sampler = path.sampler.split();
       note("scatter", scattered);
       scatter(shape_, interior_.medium, scattered, scattered.sampler.rng());
@@ -240,8 +250,31 @@ class Tracer {
     }
   }
 
+  /// Whether all light is reflected here, and again at every other place until it is scattered.
+  bool traps(const Path& path) const {
+    if constexpr (scattering && std::is_same_v<Shape, Sphere>)
+      return fresnel(dot(path.d, path.n), 1 / interface_.ior) == 1;
+    return false;
+  }
+
+  /// From total reflection to the next collision, over all reflections between.
+  void roll(Path& path) {
+    if constexpr (scattering && std::is_same_v<Shape, Sphere>) {
+      const double flight = interior_.medium.sample_flight(path.sampler.rng());
+      path.d = reflect(-path.d, path.n);
+      Sphere::roll(path.p, path.d, flight);
+      path.length += flight;
+      ++tile_.counters.flights;
+    }
+  }
+
   /// At the boundary from inside: sends out the transmitted share, keeps the reflected one.
   void leave_smooth(Path& path) {
+    if (traps(path)) {
+      roll(path);
+      if constexpr (scattering) scatter(shape_, interior_.medium, path, path.sampler.rng());
+      return;
+    }
     const double reflectance = fresnel(dot(path.d, path.n), 1 / interface_.ior);
     if (reflectance < 1) {
       const Vec3 out = *refract(-path.d, -path.n, 1 / interface_.ior);
@@ -402,7 +435,7 @@ class Tracer {
 
   bool count_event(Path& path) {
     ++tile_.counters.boundary_events;
-    if (++path.events < event_cap) return true;
+    if (++path.events < (scattering ? scattering_event_cap : clear_event_cap)) return true;
     give_up(path);
     return false;
   }

@@ -70,6 +70,28 @@ TEST(LargeSteps, AreIsotropicAboutTheCentre) {
   EXPECT_LT(length(mean), 5 / std::sqrt(n));
 }
 
+TEST(Sphere, RollsAsItReflectsChordByChord) {
+  const Sphere sphere;
+  Rng rng(8);
+  for (int i = 0; i < 200; ++i) {
+    Vec3 p = sample_isotropic(rng), d = -InterfacedLambertian::sample(rng.uniform2());
+    d = Frame(p).to_world(d);
+    const double distance = 7 * rng.uniform();
+    Vec3 q = p, e = d;
+    Hit hit;
+    double left = distance;
+    while (sphere.exit(q, e, left, hit)) {
+      left -= hit.t;
+      q = hit.p;
+      e = reflect(-e, hit.n);
+    }
+    q = q + left * e;
+    Sphere::roll(p, d, distance);
+    EXPECT_LT(length(p - q), 1e-7) << distance;
+    EXPECT_LT(length(d - e), 1e-7) << distance;
+  }
+}
+
 TEST(LargeSteps, FitIntoTheBody) {
   for (const double radius : {1.9, 2.0, 3.99, 4.0, 1e3, 1e12}) {
     const int level = ball_level(radius);
