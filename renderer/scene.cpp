@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "renderer/image_io.h"
@@ -38,6 +40,14 @@ Environment make_environment(const EnvironmentSpec& spec) {
   }
 }
 
+/// Of all that is developed from one tracing: a body that one of them leaves open is traced open.
+double least_absorption(const SceneSpec& spec) {
+  if (spec.explorable) return 0;
+  double least = spec.material.coefficients.sigma_a_peak;
+  for (const Absorption& more : spec.more_absorptions) least = std::min(least, more.sigma_a_peak);
+  return least;
+}
+
 }  // namespace
 
 Interface make_interface(const Material& material) {
@@ -76,7 +86,9 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec) {
   scene->unit_mm = unit;
   scene->shape = placed.shape;
   scene->interface = make_interface(spec.material);
-  scene->interior = make_interior(spec.material, unit);
+  Material traced = spec.material;
+  traced.coefficients.sigma_a_peak = least_absorption(spec);
+  scene->interior = make_interior(traced, unit);
   scene->environment = make_environment(spec.environment);
   scene->camera = Camera(to_body(spec.camera.position_mm), to_body(spec.camera.target_mm),
                          spec.camera.up, spec.camera.vfov_deg, spec.width, spec.height);
@@ -86,8 +98,18 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec) {
                       std::holds_alternative<LambertianInterior>(scene->interior);
   if (scene->camera_inside && opaque)
     throw SceneError(SceneError::Part::camera, "the camera is inside an opaque body");
-  // Light that only touches an opaque body has no length inside it.
-  scene->lanes = {opaque ? Lane{ClearLane{}} : make_lane(spec.material, unit)};
+  // Light that only touches an opaque body has no length inside it, or hardly any.
+  const auto add_lane = [&](const Absorber& absorber, double sigma_a_peak) {
+    const bool developed = !opaque || std::isinf(sigma_a_peak);
+    scene->lanes.push_back(developed ? make_lane(absorber, sigma_a_peak * unit) : ClearLane{});
+  };
+  add_lane(spec.material.absorber, spec.material.coefficients.sigma_a_peak);
+  for (const Absorption& more : spec.more_absorptions) add_lane(more.absorber, more.sigma_a_peak);
+  if (spec.explorable) {
+    const auto* walk = std::get_if<ScatteringInterior>(&scene->interior);
+    scene->spread = BinSpread(
+        explorable_bins(spec.explorable->densest_sigma_a * unit, walk ? walk->medium.sigma_s : 0));
+  }
   return scene;
 }
 
