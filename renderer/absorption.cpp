@@ -52,12 +52,13 @@ SpectralLane::SpectralLane(const SpectralAbsorber& absorber, double sigma_a_peak
   }
 }
 
-Lane make_lane(const Material& material, double unit_mm) {
-  const double peak = material.coefficients.sigma_a_peak * unit_mm;
+Lane make_lane(const Absorber& absorber, double peak) {
   if (peak == 0) return ClearLane{};
-  if (const auto* spectral = std::get_if<SpectralAbsorber>(&material.absorber))
+  // All of the light, also where the spectrum is 0: there it has no limit, and absorption wins.
+  if (std::isinf(peak)) return OpaqueLane{};
+  if (const auto* spectral = std::get_if<SpectralAbsorber>(&absorber))
     return SpectralLane(*spectral, peak);
-  const auto& relative = std::get<RgbAbsorber>(material.absorber).relative;
+  const auto& relative = std::get<RgbAbsorber>(absorber).relative;
   const double largest = *std::max_element(relative.begin(), relative.end());
   RgbLane lane;
   for (int c = 0; c < 3; ++c) lane.sigma_a[c] = static_cast<float>(peak * relative[c] / largest);

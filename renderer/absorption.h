@@ -51,16 +51,21 @@ class SpectralLane {
   std::vector<Operator> table_;
 };
 
+/// Infinite density: what was inside the body is gone.
+struct OpaqueLane {
+  Rgb apply(Rgb radiance, double length) const { return length > 0 ? Rgb{0, 0, 0} : radiance; }
+};
+
 /// Not an absorber but a view: radiance times length, whose mean over a clear image is the mean
 /// path.
 struct LengthLane {
   Rgb apply(Rgb radiance, double length) const { return radiance * static_cast<float>(length); }
 };
 
-using Lane = std::variant<ClearLane, RgbLane, SpectralLane, LengthLane>;
+using Lane = std::variant<ClearLane, RgbLane, SpectralLane, OpaqueLane, LengthLane>;
 
-/// The lane of a material for lengths in `unit_mm`. sigma_a_peak finite.
-Lane make_lane(const Material& material, double unit_mm);
+/// The lane of an absorber. `sigma_a_peak` [1 / unit of l] >= 0, may be infinite.
+Lane make_lane(const Absorber& absorber, double sigma_a_peak);
 
 /// The absorber at a wavelength, relative to its peak.
 double relative_absorption(const SpectralAbsorber& absorber, double wavelength_nm);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <type_traits>
 
@@ -22,15 +23,44 @@ TraceCounters& TraceCounters::operator+=(const TraceCounters& other) {
   return *this;
 }
 
-Film::Film(int w, int h, int lane_count)
+namespace {
+
+/// The sums of the picture that errors refer to.
+class Picture {
+ public:
+  template <class AnyFilm>
+  explicit Picture(const AnyFilm& film) : sum_(film.sum) {
+    const auto size = std::size_t(3) * film.width * film.height;
+    if (film.shares) {
+      shared_.assign(size, 0.0f);
+      for (std::size_t lane = 0; lane < film.sum.size(); lane += size)
+        for (std::size_t i = 0; i < size; ++i) shared_[i] += film.sum[lane + i];
+      sum_ = shared_;
+    }
+    sum_ = sum_.first(size);
+  }
+  Picture(const Picture&) = delete;
+  Picture& operator=(const Picture&) = delete;
+  float operator[](std::size_t i) const { return sum_[i]; }
+
+ private:
+  std::vector<float> shared_;
+  std::span<const float> sum_;
+};
+
+}  // namespace
+
+Film::Film(int w, int h, int lane_count, bool are_shares)
     : width(w),
       height(h),
       lanes(lane_count),
+      shares(are_shares),
       sum(std::size_t(3) * w * h * lane_count, 0.0f),
       m2(std::size_t(3) * w * h, 0.0f) {}
 
 void merge(Film& film, const PassFilm& pass) {
-  if (pass.width != film.width || pass.height != film.height || pass.lanes != film.lanes)
+  if (pass.width != film.width || pass.height != film.height || pass.lanes != film.lanes ||
+      pass.shares != film.shares)
     throw std::invalid_argument("films of different shape cannot be merged");
   if (pass.pass.index != film.passes || pass.pass.first_sample != film.samples)
     throw std::invalid_argument("passes must be merged in order");
@@ -39,8 +69,9 @@ void merge(Film& film, const PassFilm& pass) {
     const auto factor = static_cast<float>(before * added / (before + added));
     const auto inverse_before = static_cast<float>(1 / before),
                inverse_added = static_cast<float>(1 / added);
+    const Picture old(film), fresh(pass);
     for (std::size_t i = 0; i < film.m2.size(); ++i) {
-      const float delta = pass.sum[i] * inverse_added - film.sum[i] * inverse_before;
+      const float delta = fresh[i] * inverse_added - old[i] * inverse_before;
       film.m2[i] += delta * delta * factor;
     }
   }
@@ -60,6 +91,15 @@ Image develop(const Film& film, int lane) {
   return image;
 }
 
+Image develop(const Film& film) {
+  if (!film.shares) return develop(film, 0);
+  Image image(film.width, film.height);
+  const Picture picture(film);
+  const float scale = film.samples > 0 ? 1.0f / static_cast<float>(film.samples) : 0.0f;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = picture[i] * scale;
+  return image;
+}
+
 Image variance(const Film& film) {
   // With n_k samples in pass k and variance v / n_k of its mean, E[m2] = (K - 1) v and Var(mean) =
   // v / N.
@@ -75,9 +115,10 @@ double relative_error(const Film& film) {
   if (film.passes < 2) return std::numeric_limits<double>::quiet_NaN();
   const double to_mean = 1.0 / film.samples;
   const double to_variance = 1.0 / (double(film.passes - 1) * film.samples);
+  const Picture picture(film);
   std::vector<float> error(film.m2.size() / 3, 0.0f);
   for (std::size_t i = 0; i < film.m2.size(); ++i) {
-    const double mean = film.sum[i] * to_mean;
+    const double mean = picture[i] * to_mean;
     error[i / 3] += static_cast<float>(film.m2[i] * to_variance / (mean * mean + 0.01) / 3);
   }
   const std::size_t kept = error.size() - error.size() / 1000;
@@ -94,6 +135,7 @@ struct Header {
   char magic[8];
   std::int32_t width, height, lanes;
   std::uint32_t pass_index, first_sample, samples;  // of a Film: passes, 0, samples
+  std::uint32_t shares;                             // 0 or 1
   TraceCounters counters;
   double cpu_seconds;
   std::uint64_t floats;
@@ -101,8 +143,8 @@ struct Header {
 };
 static_assert(std::is_trivially_copyable_v<Header>);
 
-constexpr char pass_magic[8] = {'T', 'C', 'P', 'A', 'S', 'S', '0', '1'};
-constexpr char film_magic[8] = {'T', 'C', 'F', 'I', 'L', 'M', '0', '1'};
+constexpr char pass_magic[8] = {'T', 'C', 'P', 'A', 'S', 'S', '0', '2'};
+constexpr char film_magic[8] = {'T', 'C', 'F', 'I', 'L', 'M', '0', '2'};
 
 std::uint64_t checksum(std::string_view bytes) {
   std::uint64_t h = bytes.size();
@@ -153,7 +195,7 @@ Unpacked unpack(std::string_view bytes, const char (&magic)[8], std::uint64_t ex
   if (checksum(header, floats) != header.checksum)
     throw std::runtime_error("the film's checksum is wrong");
   const auto pixels = std::uint64_t(header.width) * std::uint64_t(header.height);
-  if (header.width <= 0 || header.height <= 0 || header.lanes <= 0 ||
+  if (header.width <= 0 || header.height <= 0 || header.lanes <= 0 || header.shares > 1 ||
       header.floats != 3 * pixels * (std::uint64_t(header.lanes) + extra))
     throw std::runtime_error("the film's size is wrong");
   return {header, floats};
@@ -166,21 +208,23 @@ std::vector<float> take(std::string_view& floats, std::size_t count) {
   return values;
 }
 
-Header header_of(const char (&magic)[8], int width, int height, int lanes) {
+template <class AnyFilm>
+Header header_of(const char (&magic)[8], const AnyFilm& film) {
   Header header;
   std::memset(static_cast<void*>(&header), 0,
               sizeof header);  // padding too: it is part of the checksum
   std::memcpy(header.magic, magic, sizeof magic);
-  header.width = width;
-  header.height = height;
-  header.lanes = lanes;
+  header.width = film.width;
+  header.height = film.height;
+  header.lanes = film.lanes;
+  header.shares = film.shares;
   return header;
 }
 
 }  // namespace
 
 std::string to_bytes(const PassFilm& film) {
-  Header header = header_of(pass_magic, film.width, film.height, film.lanes);
+  Header header = header_of(pass_magic, film);
   header.pass_index = film.pass.index;
   header.first_sample = film.pass.first_sample;
   header.samples = film.pass.count;
@@ -190,7 +234,7 @@ std::string to_bytes(const PassFilm& film) {
 }
 
 std::string to_bytes(const Film& film) {
-  Header header = header_of(film_magic, film.width, film.height, film.lanes);
+  Header header = header_of(film_magic, film);
   header.pass_index = film.passes;
   header.samples = film.samples;
   header.counters = film.counters;
@@ -204,6 +248,7 @@ PassFilm pass_film_from_bytes(std::string_view bytes) {
   film.width = header.width;
   film.height = header.height;
   film.lanes = header.lanes;
+  film.shares = header.shares != 0;
   film.pass = {header.pass_index, header.first_sample, header.samples};
   film.counters = header.counters;
   film.cpu_seconds = header.cpu_seconds;
@@ -213,7 +258,7 @@ PassFilm pass_film_from_bytes(std::string_view bytes) {
 
 Film film_from_bytes(std::string_view bytes) {
   auto [header, floats] = unpack(bytes, film_magic, 1);
-  Film film(header.width, header.height, header.lanes);
+  Film film(header.width, header.height, header.lanes, header.shares != 0);
   film.passes = header.pass_index;
   film.samples = header.samples;
   film.counters = header.counters;

@@ -31,6 +31,7 @@ struct Pass {
 /// The picture of one pass: sums over its samples.
 struct PassFilm {
   int width = 0, height = 0, lanes = 1;
+  bool shares = false;  ///< the lanes add up to one picture (explorable), else each is one
   Pass pass;
   std::vector<float> sum;  ///< lanes x height x width x 3
   TraceCounters counters;
@@ -41,21 +42,25 @@ struct PassFilm {
 /// depend on it, and the same request must give the same bits.
 struct Film {
   int width = 0, height = 0, lanes = 1;
+  bool shares = false;  ///< the lanes add up to one picture (explorable), else each is one
   std::uint32_t passes = 0, samples = 0;
   std::vector<float> sum;  ///< lanes x height x width x 3, over all samples
-  std::vector<float> m2;  ///< height x width x 3: sum over passes of n (mean_pass - mean)^2, lane 0
+  std::vector<float> m2;   ///< height x width x 3: sum over passes of n (mean_pass - mean)^2
   TraceCounters counters;
   double cpu_seconds = 0;
 
   Film() = default;
-  Film(int width, int height, int lanes);
+  Film(int width, int height, int lanes, bool shares = false);
 };
 
 /// Adds the next pass (pass.index == film.passes) (Chan et al. 1979, the pairwise update).
 void merge(Film& film, const PassFilm& pass);
 
+/// The picture that errors refer to: the mean of lane 0, or of the sum of all lanes where they are
+/// shares of it (an explorable film without absorption).
+Image develop(const Film& film);
 /// The mean of a lane.
-Image develop(const Film& film, int lane = 0);
+Image develop(const Film& film, int lane);
 
 /// Estimate of Var(pixel mean), height x width x 3, from the independent passes. Needs two passes.
 Image variance(const Film& film);

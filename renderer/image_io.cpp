@@ -236,6 +236,24 @@ OIIO::ImageSpec output_spec(const Image& image, ImageFormat format, const ImageM
   return spec;
 }
 
+/// Rows of a compressed block of an EXR file with zip compression.
+constexpr std::size_t rows_at_once = 16;
+
+template <class Write>
+void write_file(const std::filesystem::path& file, ImageFormat format, const OIIO::ImageSpec& spec,
+                Write&& write) {
+  FileSink sink(file);
+  if (!sink.opened()) fail(file, std::strerror(sink.finish()));
+  auto output = OIIO::ImageOutput::create(info(format).name);
+  if (!output || !output->set_ioproxy(&sink))
+    fail(file, "this OpenImageIO cannot write " + std::string(info(format).name));
+  const bool written = output->open(file.string(), spec) && write(*output) && output->close();
+  const std::string problem = output->geterror();
+  output.reset();  // before the sink that it writes to
+  if (const int error_number = sink.finish()) fail(file, std::strerror(error_number));
+  if (!written) fail(file, "cannot be written (" + problem + ")");
+}
+
 }  // namespace
 
 std::string_view name(ImageFormat format) { return info(format).name; }
@@ -299,19 +317,67 @@ void write_image(const std::filesystem::path& file, const Image& image, ImageFor
   if (format == ImageFormat::jpeg && std::max(image.width, image.height) > max_jpeg_side)
     fail(file, "JPEG cannot be wider or higher than 65500 pixels");
 
-  FileSink sink(file);
-  if (!sink.opened()) fail(file, std::strerror(sink.finish()));
-  auto output = OIIO::ImageOutput::create(info(format).name);
-  if (!output || !output->set_ioproxy(&sink))
-    fail(file, "this OpenImageIO cannot write " + std::string(name(format)));
-  const OIIO::ImageSpec spec = output_spec(image, format, metadata);
-  const bool written = output->open(file.string(), spec) &&
-                       output->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data()) &&
-                       output->close();
-  const std::string problem = output->geterror();
-  output.reset();  // before the sink that it writes to
-  if (const int error_number = sink.finish()) fail(file, std::strerror(error_number));
-  if (!written) fail(file, "cannot be written (" + problem + ")");
+  write_file(file, format, output_spec(image, format, metadata), [&](OIIO::ImageOutput& output) {
+    return output.write_image(OIIO::TypeDesc::FLOAT, image.pixels.data());
+  });
+}
+
+void write_half_image(const std::filesystem::path& file, const HalfImage& image,
+                      const std::vector<std::uint16_t>& planes) {
+  use_one_thread();
+  const std::size_t channels = image.channels.size(), width = image.width, height = image.height;
+  if (planes.empty() || planes.size() != channels * width * height)
+    fail(file, "planes of another size than the image");
+  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(channels), OIIO::TypeDesc::HALF);
+  spec.channelnames = image.channels;
+  spec.attribute("compression", "zip");
+  for (const auto& [attribute, value] : image.attributes) spec.attribute(attribute, value);
+  spec.attribute("Software", "Translucube " TRANSLUCUBE_VERSION);
+  spec.attribute("DateTime", "");
+  write_file(file, ImageFormat::exr, spec, [&](OIIO::ImageOutput& output) {
+    std::vector<std::uint16_t> rows(channels * width * rows_at_once);
+    for (std::size_t y = 0; y < height; y += rows_at_once) {
+      const std::size_t end = std::min(height, y + rows_at_once);
+      for (std::size_t c = 0; c < channels; ++c)
+        for (std::size_t i = 0; i < (end - y) * width; ++i)
+          rows[i * channels + c] = planes[(c * height + y) * width + i];
+      if (!output.write_scanlines(static_cast<int>(y), static_cast<int>(end), 0,
+                                  OIIO::TypeDesc::HALF, rows.data()))
+        return false;
+    }
+    return true;
+  });
+}
+
+HalfImage read_half_image(const std::filesystem::path& file, std::vector<std::uint16_t>& planes) {
+  const auto input = open_input(file);
+  const OIIO::ImageSpec spec = input->spec();
+  if (std::string_view(input->format_name()) != "openexr" || spec.format != OIIO::TypeDesc::HALF ||
+      spec.deep || spec.tile_width > 0 || spec.x != 0 || spec.y != 0)
+    fail(file, "not an EXR of half floats");
+  if (std::int64_t{spec.width} * spec.height > max_pixels) fail(file, "more than 2^28 pixels");
+  HalfImage image{spec.width, spec.height, spec.channelnames, {}};
+  for (const OIIO::ParamValue& value : spec.extra_attribs)
+    if (const std::string attribute = value.name().string(); attribute.starts_with("translucube:"))
+      image.attributes[attribute] = value.get_string();
+  const std::size_t channels = spec.channelnames.size(), width = spec.width, height = spec.height;
+  planes.resize(channels * width * height);
+  std::vector<std::uint16_t> rows(channels * width * rows_at_once);
+  std::uint16_t largest = 0;
+  for (std::size_t y = 0; y < height; y += rows_at_once) {
+    const std::size_t end = std::min(height, y + rows_at_once);
+    if (!input->read_scanlines(0, 0, static_cast<int>(y), static_cast<int>(end), 0, 0,
+                               spec.nchannels, OIIO::TypeDesc::HALF, rows.data()))
+      fail(file, "cannot be read (" + input->geterror() + ")");
+    for (std::size_t c = 0; c < channels; ++c)
+      for (std::size_t i = 0; i < (end - y) * width; ++i) {
+        const std::uint16_t half = rows[i * channels + c];
+        largest = std::max<std::uint16_t>(largest, half & 0x7fffu);
+        planes[(c * height + y) * width + i] = half;
+      }
+  }
+  if (largest >= 0x7c00u) fail(file, "holds numbers that are not finite");
+  return image;
 }
 
 }  // namespace translucube

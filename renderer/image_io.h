@@ -2,11 +2,14 @@
 
 // The only door to image files; image_io.cpp is the only file that includes OpenImageIO.
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "renderer/image.h"
 
@@ -44,5 +47,20 @@ ImageMetadata read_metadata(const std::filesystem::path& file);
 /// incomplete file may stay behind: write to a temporary name.
 void write_image(const std::filesystem::path& file, const Image& image, ImageFormat format,
                  const ImageMetadata& metadata);
+
+/// A picture of many channels, for what is no picture to look at.
+struct HalfImage {
+  int width = 0, height = 0;
+  std::vector<std::string> channels;  ///< in alphabetical order of layers, R, G, B in each
+  std::map<std::string, std::string> attributes;
+};
+
+/// Writes planes (channels x height x width, IEEE 754 binary16) as compressed EXR. Throws
+/// ImageError; an incomplete file may stay behind: write to a temporary name.
+void write_half_image(const std::filesystem::path& file, const HalfImage& image,
+                      const std::vector<std::uint16_t>& planes);
+/// The attributes are those named "translucube:...". Throws ImageError, also for an EXR that is not
+/// of half floats or holds infinities or NaNs.
+HalfImage read_half_image(const std::filesystem::path& file, std::vector<std::uint16_t>& planes);
 
 }  // namespace translucube

@@ -27,6 +27,8 @@ InterfacedLambertian::InterfacedLambertian(const RoughInterface& interface) : io
   norm_ = 1 / (pi * ior_ * ior_ * (1 - internal));
 }
 
+double InterfacedLambertian::entering() const { return 1 / (pi * norm_); }
+
 double InterfacedLambertian::transmittance(double mu) const {
   if (table_.empty()) return 1 - fresnel(mu, ior_);
   const double x = mu * nodes;

@@ -25,6 +25,8 @@ class InterfacedLambertian {
   LobeValue evaluate(Vec3 wo, Vec3 wi) const;
   /// Cosine-distributed; density mu_i / pi.
   static Vec3 sample(Sample2 u);
+  /// Share of diffuse light from outside that crosses the interface: 1 - r_e = n^2 (1 - r_i).
+  double entering() const;
 
  private:
   static constexpr int nodes = 128;

@@ -66,7 +66,8 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
   PassFilm film;
   film.width = scene.width;
   film.height = scene.height;
-  film.lanes = static_cast<int>(scene.lanes.size());
+  film.lanes = scene.film_lanes();
+  film.shares = scene.spread.has_value();
   film.pass = pass;
   film.sum.resize(std::size_t(3) * film.width * film.height * film.lanes);
   const int columns = (film.width + tile_size - 1) / tile_size,
@@ -155,7 +156,7 @@ RenderResult render(const Scene& scene, const Quality& quality, int threads, std
   const auto start = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   RenderResult result;
-  result.film = Film(scene.width, scene.height, static_cast<int>(scene.lanes.size()));
+  result.film = Film(scene.width, scene.height, scene.film_lanes(), scene.spread.has_value());
   const auto pixels = std::uint64_t(scene.width) * std::uint64_t(scene.height);
   std::optional<std::uint32_t> total;
   if (const auto* target = std::get_if<SampleTarget>(&quality)) total = target->samples;
@@ -189,12 +190,15 @@ std::string explain_sample(const Scene& scene, int x, int y, std::uint32_t sampl
   tile.x0 = x;
   tile.y0 = y;
   tile.width = tile.height = 1;
-  tile.sum.assign(3 * scene.lanes.size(), 0.0f);
+  tile.sum.assign(std::size_t(3) * scene.film_lanes(), 0.0f);
   std::string log;
   trace_tile(scene, pass.index, sample - pass.first_sample, 1, tile, &log);
+  Rgb radiance;
+  for (std::size_t lane = 0; lane < (scene.spread ? tile.sum.size() : 3); lane += 3)
+    radiance += Rgb{tile.sum[lane], tile.sum[lane + 1], tile.sum[lane + 2]};
   char line[128];
-  std::snprintf(line, sizeof line, "radiance (%.9g, %.9g, %.9g)\n", tile.sum[0], tile.sum[1],
-                tile.sum[2]);
+  std::snprintf(line, sizeof line, "radiance (%.9g, %.9g, %.9g)\n", radiance.r, radiance.g,
+                radiance.b);
   return log + line;
 }
 

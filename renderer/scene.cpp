@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "renderer/image_io.h"
@@ -38,6 +40,14 @@ Environment make_environment(const EnvironmentSpec& spec) {
   }
 }
 
+/// Of all that is developed from one tracing: a body that one of them leaves open is traced open.
+double least_absorption(const SceneSpec& spec) {
+  if (spec.explorable) return 0;
+  double least = spec.material.coefficients.sigma_a_peak;
+  for (const Absorption& more : spec.more_absorptions) least = std::min(least, more.sigma_a_peak);
+  return least;
+}
+
 }  // namespace
 
 Interface make_interface(const Material& material) {
@@ -59,15 +69,14 @@ Interior make_interior(const Material& material, double unit_mm) {
 }
 
 Lane make_lane(const Material& material, const Interior& interior, double unit_mm) {
-  if (std::holds_alternative<DensePigmentInterior>(interior)) {
-    Material pigment = material;
-    pigment.coefficients.sigma_a_peak = *material.absorption_per_scattering;
-    return make_lane(pigment, 1.0);
-  }
-  // Light that only touches an opaque body has no length inside it.
+  if (std::holds_alternative<DensePigmentInterior>(interior))
+    return make_lane(material.absorber, *material.absorption_per_scattering);
+  const double sigma_a_peak = material.coefficients.sigma_a_peak;
+  // Light that only touches an opaque body has no length inside it, or hardly any.
   const bool opaque = std::holds_alternative<BlackInterior>(interior) ||
                       std::holds_alternative<LambertianInterior>(interior);
-  return opaque ? Lane{ClearLane{}} : make_lane(material, unit_mm);
+  return opaque && !std::isinf(sigma_a_peak) ? ClearLane{}
+                                             : make_lane(material.absorber, sigma_a_peak * unit_mm);
 }
 
 void check_mesh(const std::filesystem::path& file) {
@@ -90,7 +99,9 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec) {
   scene->unit_mm = unit;
   scene->shape = placed.shape;
   scene->interface = make_interface(spec.material);
-  scene->interior = make_interior(spec.material, unit);
+  Material traced = spec.material;
+  traced.coefficients.sigma_a_peak = least_absorption(spec);
+  scene->interior = make_interior(traced, unit);
   scene->environment = make_environment(spec.environment);
   scene->camera = Camera(to_body(spec.camera.position_mm), to_body(spec.camera.target_mm),
                          spec.camera.up, spec.camera.vfov_deg, spec.width, spec.height);
@@ -101,10 +112,21 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec) {
   if (scene->camera_inside && !open)
     throw SceneError(SceneError::Part::camera, "the camera is inside an opaque body");
   scene->lanes = {make_lane(spec.material, scene->interior, unit)};
+  for (const Absorption& more : spec.more_absorptions) {
+    Material other = spec.material;
+    other.absorber = more.absorber;
+    other.coefficients.sigma_a_peak = more.sigma_a_peak;
+    scene->lanes.push_back(make_lane(other, scene->interior, unit));
+  }
+  if (spec.explorable) {
+    const auto* walk = std::get_if<ScatteringInterior>(&scene->interior);
+    scene->spread = BinSpread(
+        explorable_bins(spec.explorable->densest_sigma_a * unit, walk ? walk->medium.sigma_s : 0));
+  }
   return scene;
 }
 
-std::string transport_name(const Scene& scene) {
+std::string transport_name(const Interior& interior) {
   struct Name {
     std::string operator()(const BlackInterior&) const { return "interface"; }
     std::string operator()(const ClearInterior&) const { return "clear"; }
@@ -112,7 +134,9 @@ std::string transport_name(const Scene& scene) {
     std::string operator()(const DensePigmentInterior&) const { return "half-space-walk"; }
     std::string operator()(const LambertianInterior&) const { return "interfaced-lambertian"; }
   };
-  return std::visit(Name{}, scene.interior);
+  return std::visit(Name{}, interior);
 }
+
+std::string transport_name(const Scene& scene) { return transport_name(scene.interior); }
 
 }  // namespace translucube

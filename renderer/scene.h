@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <variant>
+#include <vector>
 
 #include "renderer/material.h"
 #include "renderer/vec.h"
@@ -37,9 +39,24 @@ struct CameraSpec {
   double vfov_deg = 32;  ///< vertical field of view, (0, 180)
 };
 
+/// An absorber and its density.
+struct Absorption {
+  Absorber absorber;
+  double sigma_a_peak = 0;  ///< [1/mm], may be +infinity
+};
+
+/// Keeps the path lengths, so that any absorber can be developed later (explorable.h).
+struct Explorable {
+  double densest_sigma_a = 0;  ///< what it will be developed for at most [1/mm]
+};
+
 /// All that the picture depends on, as plain values.
 struct SceneSpec {
   Material material;
+  /// Other absorptions of the same body, traced with it: a lane of the film for each, behind the
+  /// material's own. Where one of them is finite, none changes what is traced.
+  std::vector<Absorption> more_absorptions;
+  std::optional<Explorable> explorable;
   ObjectSpec object;
   EnvironmentSpec environment;
   CameraSpec camera;

@@ -4,6 +4,8 @@
 // once decided. Lengths are in the body's unit.
 
 #include <array>
+#include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "renderer/bsdf.h"
 #include "renderer/camera.h"
 #include "renderer/environment.h"
+#include "renderer/explorable.h"
 #include "renderer/lambertian.h"
 #include "renderer/medium.h"
 #include "renderer/scene.h"
@@ -47,7 +50,12 @@ struct Scene {
   Environment environment;
   Camera camera;
   bool camera_inside = false;
-  std::vector<Lane> lanes;
+  std::vector<Lane> lanes;          ///< of the film, unless it is explorable; [0] is the material's
+  std::optional<BinSpread> spread;  ///< explorable: the film's lanes are bins of length
+
+  int film_lanes() const {
+    return spread ? spread->bins().count() : static_cast<int>(lanes.size());
+  }
 };
 
 /// The optics of a material for a body with this unit.
@@ -55,5 +63,6 @@ Interface make_interface(const Material& material);
 Interior make_interior(const Material& material, double unit_mm);
 /// The material's lane in the lengths that the interior's paths bring.
 Lane make_lane(const Material& material, const Interior& interior, double unit_mm);
+std::string transport_name(const Interior& interior);
 
 }  // namespace translucube

@@ -334,6 +334,8 @@ class Tracer {
 
   /// What the background sends back through the interface.
   void enter_lambertian(Path& path) {
+    const double length = path.length;
+    path.length += shortest_length;  // it was inside
     const Frame frame(path.n);
     const Vec3 wo = frame.to_local(-path.d);
     const auto evaluate = [&](Vec3 wi) { return interior_.base.evaluate(wo, wi); };
@@ -342,6 +344,7 @@ class Tracer {
     const LobeValue value = evaluate(wi);
     if (value.f_cos > 0)
       leave(path, frame.to_world(wi), path.weight * value.f_cos / value.pdf, value.pdf);
+    path.length = length;
   }
 
   // ---- between stages
@@ -407,6 +410,21 @@ class Tracer {
     const Rgb brought = radiance * static_cast<float>(weight);
     const std::size_t stride = std::size_t(3) * tile_.width * tile_.height;
     float* pixel = &tile_.sum[std::size_t(3) * path.pixel];
+    if (scene_.spread) {
+      if (!std::isfinite(brought.r + brought.g + brought.b + static_cast<float>(path.length))) {
+        ++tile_.counters.nan_samples;
+        return;
+      }
+      const BinWeights spread = (*scene_.spread)(path.length);
+      pixel += spread.bin * stride;
+      for (const float share : spread.weights) {
+        pixel[0] += brought.r * share;
+        pixel[1] += brought.g * share;
+        pixel[2] += brought.b * share;
+        pixel += stride;
+      }
+      return;
+    }
     for (const Lane& lane : scene_.lanes) {
       const Rgb developed =
           std::visit([&](const auto& l) { return l.apply(brought, path.length); }, lane);

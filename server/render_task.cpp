@@ -116,7 +116,8 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
 
   if (!stored && task_seconds > seconds_between_checkpoints)
     workshop_.artifacts.write_pass(task.job_id, *pass);
-  if (hand_.film.passes == 0) hand_.film = Film(pass->width, pass->height, pass->lanes);
+  if (hand_.film.passes == 0)
+    hand_.film = Film(pass->width, pass->height, pass->lanes, pass->shares);
   merge(hand_.film, *pass);
   if (hand_.film.counters.nan_samples > 0) {
     fail(task, {api::ProblemCode::internal,
@@ -186,7 +187,8 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
       return false;
     }
     workshop_.artifacts.write_pass(task.job_id, *pass);
-    if (hand_.film.passes == 0) hand_.film = Film(pass->width, pass->height, pass->lanes);
+    if (hand_.film.passes == 0)
+      hand_.film = Film(pass->width, pass->height, pass->lanes, pass->shares);
     merge(hand_.film, *pass);
   }
   return true;

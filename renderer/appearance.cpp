@@ -1,0 +1,120 @@
+#include "renderer/appearance.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+
+#include "renderer/slab_reading.h"
+#include "renderer/slab_walk.h"
+
+namespace translucube {
+namespace {
+
+/// Independent estimates whose spread tells the standard error.
+constexpr int replicates = 32;
+
+/// Calls work(i) for every i < count, on `threads` threads.
+template <class Work>
+void in_parallel(int threads, int count, Work&& work) {
+  if (threads == 0) threads = static_cast<int>(std::thread::hardware_concurrency());
+  std::atomic<int> next = 0;
+  const auto run = [&] {
+    for (int i = next++; i < count; i = next++) work(i);
+  };
+  std::vector<std::jthread> helpers;
+  for (int t = 1; t < std::min(threads, count); ++t) helpers.emplace_back(run);
+  run();
+}
+
+/// All replicates of one incidence.
+struct Trial {
+  Incidence incidence;
+  std::vector<SlabTally> tallies;
+  std::uint64_t histories = 0, wanted = 0;  ///< of each replicate
+  Readings readings;
+
+  bool pending() const { return histories < wanted; }
+};
+
+/// Histories of a replicate before the first look: light that so many have missed altogether is
+/// less than half of the standard error that is asked for.
+std::uint64_t first_histories(double standard_error) {
+  return std::bit_ceil(static_cast<std::uint64_t>(2 / standard_error / replicates));
+}
+
+/// Histories of a replicate after `histories` gave `error`: a power of two, where low-discrepancy
+/// points are at their best.
+std::uint64_t next_histories(std::uint64_t histories, double error, double standard_error) {
+  const double ratio = std::min(error / standard_error, 8.0);
+  const double wanted = static_cast<double>(histories) * ratio * ratio;
+  return std::max(2 * histories, std::bit_ceil(static_cast<std::uint64_t>(wanted)));
+}
+
+void trace(const SlabBody& body, std::uint64_t seed, std::vector<Trial*> trials, int threads) {
+  in_parallel(threads, replicates * static_cast<int>(trials.size()), [&](int i) {
+    Trial& trial = *trials[i / replicates];
+    const int replicate = i % replicates;
+    const std::uint64_t key = hash_combine(
+        seed, 2 * std::uint64_t(replicate) + (trial.incidence == Incidence::normal ? 0 : 1));
+    walk_slab(body, trial.incidence, key, trial.histories, trial.wanted - trial.histories,
+              trial.tallies[replicate]);
+  });
+  for (Trial* trial : trials) trial->histories = trial->wanted;
+}
+
+}  // namespace
+
+SlabAppearance slab_appearance(const Material& material, double thickness_mm, double standard_error,
+                               std::uint64_t seed, int threads) {
+  const auto start = std::chrono::steady_clock::now();
+  const SlabChannels channels = slab_channels(material, thickness_mm);
+  const auto [least, peak] = std::minmax_element(channels.sigma_a.begin(), channels.sigma_a.end());
+  const SlabBody body{make_interface(material), make_interior(material, thickness_mm), *least};
+  const bool walks = needs_walks(body);
+
+  SlabDeveloper developer(channels, *peak);
+  std::array<Trial, 2> trials{Trial{Incidence::normal, {}, 0, 0, {}},
+                              Trial{Incidence::diffuse, {}, 0, 0, {}}};
+  for (Trial& trial : trials) {
+    trial.readings.unwalked = read_unwalked(body, trial.incidence, channels);
+    trial.tallies.assign(walks ? replicates : 0, SlabTally(std::isinf(*peak) ? 0 : *peak));
+    trial.wanted = walks ? first_histories(standard_error) : 0;
+  }
+  while (trials[0].pending() || trials[1].pending()) {
+    std::vector<Trial*> pending;
+    for (Trial& trial : trials)
+      if (trial.pending()) pending.push_back(&trial);
+    trace(body, seed, pending, threads);
+    for (Trial* trial : pending) {
+      trial->readings.replicates.clear();
+      for (const SlabTally& tally : trial->tallies)
+        trial->readings.replicates.push_back(
+            developer.develop(tally, static_cast<double>(trial->histories)));
+      const double error = largest_error_of_totals(trial->readings);
+      if (!std::isfinite(error)) throw std::runtime_error("slab optics that are not finite: a bug");
+      if (error > standard_error)
+        trial->wanted = next_histories(trial->histories, error, standard_error);
+    }
+  }
+
+  SlabAppearance appearance;
+  appearance.normal = optics_of(trials[0].readings);
+  appearance.diffuse = optics_of(trials[1].readings);
+  appearance.haze = haze_of(trials[0].readings);
+  appearance.clarity = clarity_of(trials[0].readings);
+  for (const Trial& trial : trials) {
+    appearance.samples += trial.histories * trial.tallies.size();
+    appearance.largest_standard_error =
+        std::max(appearance.largest_standard_error, largest_error_of_totals(trial.readings));
+  }
+  appearance.transport = transport_name(body.interior);
+  appearance.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return appearance;
+}
+
+}  // namespace translucube
