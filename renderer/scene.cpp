@@ -66,6 +66,28 @@ Interior make_interior(const Material& material, double unit_mm) {
   return ScatteringInterior{Medium{material.coefficients.sigma_s * unit_mm, material.g}};
 }
 
+namespace {
+
+/// The paper's model, where it says something else than the transport: not of an empty body nor of
+/// a black one.
+void use_dipole(const DipoleModel& model, const SceneSpec& spec, Scene& scene) {
+  if (spec.explorable) throw std::invalid_argument("the dipole has no path lengths to keep");
+  if (std::holds_alternative<BlackInterior>(scene.interior) ||
+      std::holds_alternative<ClearInterior>(scene.interior))
+    return;
+  if (scene.camera_inside)
+    throw SceneError(SceneError::Part::camera,
+                     "the camera is inside the body, where the dipole model knows no light");
+  std::vector<Absorption> absorptions{
+      {spec.material.absorber, spec.material.coefficients.sigma_a_peak}};
+  absorptions.insert(absorptions.end(), spec.more_absorptions.begin(), spec.more_absorptions.end());
+  // A sphere of radius 1 and what is bounded by it.
+  constexpr double reach = 2;
+  scene.interior = make_dipole(spec.material, scene.unit_mm, model.opacity, reach, absorptions);
+}
+
+}  // namespace
+
 void check_mesh(const std::filesystem::path& file) {
   try {
     TriangleMesh mesh = read_mesh(file);
@@ -94,6 +116,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec) {
                          spec.camera.up, spec.camera.vfov_deg, spec.width, spec.height);
   scene->camera_inside =
       std::visit([&](const auto& s) { return s.inside(scene->camera.position); }, scene->shape);
+  if (const auto* model = std::get_if<DipoleModel>(&spec.model)) use_dipole(*model, spec, *scene);
   const bool opaque = std::holds_alternative<BlackInterior>(scene->interior) ||
                       std::holds_alternative<LambertianInterior>(scene->interior);
   if (scene->camera_inside && opaque)
@@ -119,6 +142,7 @@ std::string transport_name(const Scene& scene) {
     std::string operator()(const ClearInterior&) const { return "clear"; }
     std::string operator()(const ScatteringInterior&) const { return "walk"; }
     std::string operator()(const LambertianInterior&) const { return "interfaced-lambertian"; }
+    std::string operator()(const DipoleInterior&) const { return "dipole"; }
   };
   return std::visit(Name{}, scene.interior);
 }

@@ -11,6 +11,7 @@
 #include "renderer/absorption.h"
 #include "renderer/bsdf.h"
 #include "renderer/camera.h"
+#include "renderer/dipole_interior.h"
 #include "renderer/environment.h"
 #include "renderer/explorable.h"
 #include "renderer/lambertian.h"
@@ -32,7 +33,8 @@ struct LambertianInterior {
 
 using Shape = std::variant<Sphere, Slab, Mesh>;
 using Interface = std::variant<SmoothInterface, RoughInterface>;
-using Interior = std::variant<BlackInterior, ClearInterior, ScatteringInterior, LambertianInterior>;
+using Interior = std::variant<BlackInterior, ClearInterior, ScatteringInterior, LambertianInterior,
+                              DipoleInterior>;
 
 struct Scene {
   int width = 0, height = 0;
@@ -55,5 +57,9 @@ struct Scene {
 /// The optics of a material for a body with this unit.
 Interface make_interface(const Material& material);
 Interior make_interior(const Material& material, double unit_mm);
+/// The paper's model of a body that is neither empty nor black; every distance on it is within
+/// `reach` units.
+Interior make_dipole(const Material& material, double unit_mm, double opacity, double reach,
+                     const std::vector<Absorption>& absorptions);
 
 }  // namespace translucube
