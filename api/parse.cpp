@@ -1,6 +1,7 @@
 #include "api/parse.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -11,6 +12,7 @@ namespace translucube::api {
 namespace {
 
 using nlohmann::json;
+using namespace nlohmann::literals;
 
 /// Every integer up to it is exact in double precision, hence in every JSON reader.
 constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 53) - 1;
@@ -44,10 +46,31 @@ void read_quality(const json& value, const std::string& pointer, const Limits& l
 
 /// Parts of the contract that this version reads and checks but does not serve.
 void refuse_what_is_not_served_yet(const RenderRequest& request, Faults& faults) {
-  if (request.model == Model::dipole)
-    faults.add("/model", "the dipole model is not served by this version yet");
   if (request.explorable)
     faults.add("/explorable", "explorable renders are not served by this version yet");
+}
+
+/// Similarity replaces anisotropic scattering by isotropic scattering of sigma_s (1 - g). Beyond
+/// this the two differ in what the dipole is asked for: where light comes out near its entry.
+constexpr double largest_anisotropy_of_dipole = 0.9;
+
+/// What is legal but has no answer in the model that was asked for.
+void refuse_what_the_model_cannot_serve(const json& value, const RenderRequest& request,
+                                        Faults& faults) {
+  if (request.model != Model::dipole) return;
+  if (request.explorable)
+    faults.add("/explorable",
+               "the dipole model has no path lengths to keep; ask for the transport model");
+  const auto* cube = std::get_if<CubePoint>(&request.material.point);
+  if (request.material.pigment_absorption_per_scattering && cube != nullptr &&
+      cube->scattering == 1)
+    faults.add("/material/pigment", "the dipole model has no pigments of infinite density");
+  if (std::fabs(request.material.anisotropy) > largest_anisotropy_of_dipole) {
+    const bool in_coefficients = value.contains("/material/coefficients/g"_json_pointer);
+    faults.add(in_coefficients ? "/material/coefficients/g" : "/material/anisotropy",
+               "the dipole model knows anisotropy by similarity only, which holds up to 0.9 in "
+               "size; ask for the transport model");
+  }
 }
 
 }  // namespace
@@ -86,6 +109,7 @@ std::variant<RenderRequest, Problem> parse_render_request(std::string_view text,
   RenderRequest request = catalog.defaults;
   read_request(value, "", catalog, MaterialPoint::required, request, faults);
   refuse_what_is_not_served_yet(request, faults);
+  refuse_what_the_model_cannot_serve(value, request, faults);
   if (!faults.empty()) return invalid_request(faults);
   return request;
 }

@@ -66,6 +66,16 @@ Material material_of(const MaterialRequest& request, const Catalog& catalog) {
   return material;
 }
 
+/// w of the dipole model: the scattering coordinate in the cube, of any way to give a material.
+LightModel light_model(const RenderRequest& request, const Material& material) {
+  if (request.model == Model::transport) return ExactTransport{};
+  const auto* cube = std::get_if<CubePoint>(&request.material.point);
+  return DipoleModel{
+      cube ? cube->scattering
+           : to_cube(material.coefficients, material.g, request.material.reference_thickness_mm)
+                 .scattering};
+}
+
 Vec3 vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 Rgb radiance(const std::array<double, 3>& v) {
@@ -77,6 +87,7 @@ Rgb radiance(const std::array<double, 3>& v) {
 SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
   SceneSpec spec;
   spec.material = material_of(request.material, catalog);
+  spec.model = light_model(request, spec.material);
   spec.object = std::visit(
       Overloaded{[](const SphereObject& sphere) -> ObjectSpec { return sphere; },
                  [](const MeshRequest& mesh) -> ObjectSpec { return MeshObject{mesh.file}; }},

@@ -79,6 +79,30 @@ Lane make_lane(const Material& material, const Interior& interior, double unit_m
                                              : make_lane(material.absorber, sigma_a_peak * unit_mm);
 }
 
+namespace {
+
+/// The paper's model, where it says something else than the transport: not of an empty body nor of
+/// a black one.
+void use_dipole(const DipoleModel& model, const SceneSpec& spec, Scene& scene) {
+  if (spec.explorable) throw std::invalid_argument("the dipole has no path lengths to keep");
+  if (std::holds_alternative<BlackInterior>(scene.interior) ||
+      std::holds_alternative<ClearInterior>(scene.interior))
+    return;
+  if (std::holds_alternative<DensePigmentInterior>(scene.interior))
+    throw std::invalid_argument("the dipole has no pigments of infinite density");
+  if (scene.camera_inside)
+    throw SceneError(SceneError::Part::camera,
+                     "the camera is inside the body, where the dipole model knows no light");
+  std::vector<Absorption> absorptions{
+      {spec.material.absorber, spec.material.coefficients.sigma_a_peak}};
+  absorptions.insert(absorptions.end(), spec.more_absorptions.begin(), spec.more_absorptions.end());
+  // A sphere of radius 1 and what is bounded by it.
+  constexpr double reach = 2;
+  scene.interior = make_dipole(spec.material, scene.unit_mm, model.opacity, reach, absorptions);
+}
+
+}  // namespace
+
 void check_mesh(const std::filesystem::path& file) {
   try {
     TriangleMesh mesh = read_mesh(file);
@@ -107,8 +131,10 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec) {
                          spec.camera.up, spec.camera.vfov_deg, spec.width, spec.height);
   scene->camera_inside =
       std::visit([&](const auto& s) { return s.inside(scene->camera.position); }, scene->shape);
+  if (const auto* model = std::get_if<DipoleModel>(&spec.model)) use_dipole(*model, spec, *scene);
   const bool open = std::holds_alternative<ClearInterior>(scene->interior) ||
-                    std::holds_alternative<ScatteringInterior>(scene->interior);
+                    std::holds_alternative<ScatteringInterior>(scene->interior) ||
+                    std::holds_alternative<DipoleInterior>(scene->interior);
   if (scene->camera_inside && !open)
     throw SceneError(SceneError::Part::camera, "the camera is inside an opaque body");
   scene->lanes = {make_lane(spec.material, scene->interior, unit)};
@@ -133,6 +159,7 @@ std::string transport_name(const Interior& interior) {
     std::string operator()(const ScatteringInterior&) const { return "walk"; }
     std::string operator()(const DensePigmentInterior&) const { return "half-space-walk"; }
     std::string operator()(const LambertianInterior&) const { return "interfaced-lambertian"; }
+    std::string operator()(const DipoleInterior&) const { return "dipole"; }
   };
   return std::visit(Name{}, interior);
 }

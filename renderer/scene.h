@@ -50,9 +50,17 @@ struct Explorable {
   double densest_sigma_a = 0;  ///< what it will be developed for at most [1/mm]
 };
 
+/// Which light transport renders the body: the exact one, or the paper's approximation (dipole.h).
+struct ExactTransport {};
+struct DipoleModel {
+  double opacity = 0;  ///< w: the material's scattering coordinate in the cube, [0, 1]
+};
+using LightModel = std::variant<ExactTransport, DipoleModel>;
+
 /// All that the picture depends on, as plain values.
 struct SceneSpec {
   Material material;
+  LightModel model;
   /// Other absorptions of the same body, traced with it: a lane of the film for each, behind the
   /// material's own. Where one of them is finite, none changes what is traced.
   std::vector<Absorption> more_absorptions;

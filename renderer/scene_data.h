@@ -12,6 +12,7 @@
 #include "renderer/absorption.h"
 #include "renderer/bsdf.h"
 #include "renderer/camera.h"
+#include "renderer/dipole_interior.h"
 #include "renderer/environment.h"
 #include "renderer/explorable.h"
 #include "renderer/lambertian.h"
@@ -38,7 +39,7 @@ struct LambertianInterior {
 using Shape = std::variant<Sphere, Slab, Mesh>;
 using Interface = std::variant<SmoothInterface, RoughInterface>;
 using Interior = std::variant<BlackInterior, ClearInterior, ScatteringInterior,
-                              DensePigmentInterior, LambertianInterior>;
+                              DensePigmentInterior, LambertianInterior, DipoleInterior>;
 
 struct Scene {
   int width = 0, height = 0;
@@ -64,5 +65,9 @@ Interior make_interior(const Material& material, double unit_mm);
 /// The material's lane in the lengths that the interior's paths bring.
 Lane make_lane(const Material& material, const Interior& interior, double unit_mm);
 std::string transport_name(const Interior& interior);
+/// The paper's model of a body that is neither empty nor black; every distance on it is within
+/// `reach` units.
+Interior make_dipole(const Material& material, double unit_mm, double opacity, double reach,
+                     const std::vector<Absorption>& absorptions);
 
 }  // namespace translucube

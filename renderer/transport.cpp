@@ -16,6 +16,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "renderer/dipole_exit.h"
 #include "renderer/microsurface.h"
 #include "renderer/walk.h"
 
@@ -33,6 +34,8 @@ constexpr double roulette_of_rough = 1.0 / 8;
 /// light that is trapped gets there, for good (a camera inside a clear body) or, in a mesh, for
 /// nearly as long (a medium of millions of bounding radii to the mean free path).
 constexpr std::uint32_t clear_event_cap = 20'000, scattering_event_cap = 2'000'000;
+/// In the dipole model, times that light may come back to the body from outside, likewise.
+constexpr std::uint32_t dipole_arrival_cap = 16;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -42,6 +45,8 @@ struct Path : Particle {
   double roulette = roulette_of_clear;  ///< weight below which chance decides
   double pdf = 0;  ///< of d, where connect() had a chance to find it too; 0: none had
   std::uint32_t pixel = 0, events = 0;
+  /// Of the dipole model: colour so far, times back at the body from outside.
+  std::uint32_t tint = 0, arrivals = 0;
   PathSampler sampler;
 };
 
@@ -51,8 +56,10 @@ class Tracer {
   static constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
   static constexpr bool lambertian = std::is_same_v<Interior, LambertianInterior>;
   static constexpr bool dense = std::is_same_v<Interior, DensePigmentInterior>;
+  static constexpr bool dipole = std::is_same_v<Interior, DipoleInterior>;
   /// Whether light goes on inside the body.
-  static constexpr bool open = scattering || dense || std::is_same_v<Interior, ClearInterior>;
+  static constexpr bool open =
+      scattering || dense || dipole || std::is_same_v<Interior, ClearInterior>;
 
  public:
   Tracer(const Scene& scene, const Shape& shape, const Interface& interface,
@@ -188,11 +195,13 @@ class Tracer {
     const Vec3 wo = -path.d;
     const double reflectance = fresnel(dot(wo, path.n), interface_.ior);
     if constexpr (lambertian) enter_lambertian(path);
+    if constexpr (dipole) enter_dipole(path);
     if (reflectance > 0) leave(path, reflect(wo, path.n), path.weight * reflectance, 0);
     if constexpr (open) {
       if (reflectance == 1) return;
       path.d = *refract(wo, path.n, interface_.ior);
       path.weight *= 1 - reflectance;
+      if constexpr (dipole) path.weight *= interior_.clear_share;
       path.pdf = 0;
       inward(path);
     }
@@ -288,7 +297,12 @@ class Tracer {
 
   void enter_rough(Path path) {
     if constexpr (lambertian) enter_lambertian(path);
+    if constexpr (dipole) enter_dipole(path);
     if (!cross_rough(path, Frame(path.n), interface_.ior, true)) return;
+    if constexpr (dipole) {
+      if (interior_.clear_share == 0) return;  // a threshold relative to nothing ends nothing
+      path.weight *= interior_.clear_share;
+    }
     if constexpr (open) inward(path);
   }
 
@@ -347,6 +361,53 @@ class Tracer {
     path.length = length;
   }
 
+  // ---- the paper's model
+
+  /// What the body sends out at a point, of light that went in there or elsewhere: one sample for
+  /// plastic's diffuse half and the dipole together (dipole.h).
+  void enter_dipole(Path& arriving) {
+    const double all = interior_.here + interior_.elsewhere;
+    if (all <= 0) return;
+    Path path = arriving;
+    const double cos_o = -dot(path.d, path.n), share_here = interior_.here / all;
+    path.weight *= all;
+    Sample2 u = path.sampler.next2();
+    if (u.u < share_here) {
+      if (interior_.absorbing) tint(path, [](const DipoleColor& color) { return color.total(); });
+    } else {
+      u.u = (u.u - share_here) / (1 - share_here);
+      const DipoleExit from =
+          sample_exit(shape_, interior_.radii, path.p, path.n, u, path.sampler.rng());
+      path.weight *= from.weight / interior_.radii.mass();
+      arriving.sampler = path.sampler;
+      if (from.lost) give_up(path);
+      if (path.weight <= 0) return;
+      path.p = from.p;
+      path.n = from.n;
+      if (interior_.absorbing)
+        tint(path, [&](const DipoleColor& color) { return color.at(from.r); });
+    }
+    note("dipole", path);
+    const Frame frame(path.n);
+    const auto evaluate = [&](Vec3 wi) { return interior_.base.evaluate({0, 0, cos_o}, wi); };
+    connect(path, frame, evaluate);
+    const Vec3 wi = InterfacedLambertian::sample(path.sampler.next2());
+    const LobeValue value = evaluate(wi);
+    if (value.f_cos > 0)
+      leave(path, frame.to_world(wi), path.weight * value.f_cos / value.pdf, value.pdf);
+    arriving.sampler = path.sampler;
+  }
+
+  /// Colours what the path brings from here on, for each lane.
+  template <class Operator>
+  void tint(Path& path, Operator&& color) {
+    const std::size_t lanes = interior_.colors.size(), before = path.tint * lanes;
+    if (tints_.empty()) tints_.assign(lanes, identity_operator);
+    path.tint = static_cast<std::uint32_t>(tints_.size() / lanes);
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      tints_.push_back(multiply(tints_[before + lane], color(interior_.colors[lane])));
+  }
+
   // ---- between stages
 
   /// Next-event estimation at a rough exit: a direction of the environment, weighted by the balance
@@ -388,6 +449,11 @@ class Tracer {
       escape(path);
     } else {
       path.sampler = from.sampler.split();
+      // A model that gains energy has no answer in deep cavities: the branches must not multiply.
+      if constexpr (dipole) {
+        if (++path.arrivals > 2) path.roulette = 1;
+        if (path.arrivals > dipole_arrival_cap) return give_up(path);
+      }
       if (survives(path)) arriving_.push_back(path);
     }
   }
@@ -425,9 +491,12 @@ class Tracer {
       }
       return;
     }
-    for (const Lane& lane : scene_.lanes) {
-      const Rgb developed =
-          std::visit([&](const auto& l) { return l.apply(brought, path.length); }, lane);
+    for (std::size_t i = 0; i < scene_.lanes.size(); ++i) {
+      Rgb developed = std::visit([&](const auto& lane) { return lane.apply(brought, path.length); },
+                                 scene_.lanes[i]);
+      if constexpr (dipole)
+        if (path.tint > 0)
+          developed = apply_operator(tints_[path.tint * scene_.lanes.size() + i], developed);
       if (!std::isfinite(developed.r + developed.g + developed.b)) ++tile_.counters.nan_samples;
       pixel[0] += developed.r;
       pixel[1] += developed.g;
@@ -487,6 +556,7 @@ class Tracer {
   Tile& tile_;
   std::string* log_;
   std::vector<Path> arriving_, walking_, leaving_;
+  std::vector<ColorOperator> tints_;  ///< lanes to a tint; the first changes nothing
 };
 
 }  // namespace

@@ -111,11 +111,41 @@ TEST(Request, SeedsAreExactInEveryJsonReader) {
 }
 
 TEST(Request, PartsThatAreNotServedYetAreReadFirst) {
-  EXPECT_THAT(fault_at("/model", request_with(R"("model":"dipole")")), HasSubstr("not served"));
   EXPECT_THAT(fault_at("/explorable", request_with(R"("explorable":true)")),
               HasSubstr("not served"));
   EXPECT_EQ(fault_at("/model", request_with(R"("model":"path")")), "must be transport or dipole");
   accepted(request_with(R"("model":"transport","explorable":false)"));
+}
+
+TEST(Request, TheDipoleModelSaysWhatItCannotServe) {
+  const auto with_g = [](const std::string& g, const std::string& model) {
+    return R"({"model":")" + model + R"(","material":{"anisotropy":)" + g + R"(,"cube":)" +
+           some_cube + "}}";
+  };
+  EXPECT_EQ(accepted(request_with(R"("model":"dipole")")).model, Model::dipole);
+  accepted(with_g("0.9", "dipole"));
+  accepted(with_g("0.95", "transport"));
+  EXPECT_THAT(fault_at("/material/anisotropy", with_g("0.95", "dipole")), HasSubstr("similarity"));
+  fault_at("/material/anisotropy", with_g("-0.91", "dipole"));
+  EXPECT_THAT(fault_at("/material/coefficients/g",
+                       R"({"model":"dipole","material":{"coefficients":
+                           {"sigma_a_peak":0,"alpha":0,"sigma_s":1,"g":0.99}}})"),
+              HasSubstr("similarity"));
+  EXPECT_THAT(pointers(request_with(R"("model":"dipole","explorable":true)")),
+              testing::Contains("/explorable"));
+}
+
+TEST(Request, TheDipoleModelWeighsByTheScatteringCoordinate) {
+  const auto opacity = [](const std::string& text) {
+    const SceneSpec spec = scene_spec(accepted(text), shipped_catalog());
+    return std::get<DipoleModel>(spec.model).opacity;
+  };
+  EXPECT_EQ(opacity(request_with(R"("model":"dipole")")), 0.5);
+  EXPECT_NEAR(opacity(R"({"model":"dipole","material":{"reference_thickness_mm":5,"anisotropy":0.5,
+                          "coefficients":{"sigma_a_peak":0,"alpha":0,"sigma_s":1.6}}})"),
+              3.0 / (1 + 3.0), 1e-12);
+  const SceneSpec exact = scene_spec(accepted(request_with(R"("seed":1)")), shipped_catalog());
+  EXPECT_TRUE(std::holds_alternative<ExactTransport>(exact.model));
 }
 
 }  // namespace
