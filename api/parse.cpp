@@ -62,9 +62,10 @@ void refuse_what_the_model_cannot_serve(const json& value, const RenderRequest& 
     faults.add("/explorable",
                "the dipole model has no path lengths to keep; ask for the transport model");
   const auto* cube = std::get_if<CubePoint>(&request.material.point);
-  if (request.material.pigment_absorption_per_scattering && cube != nullptr &&
-      cube->scattering == 1)
-    faults.add("/material/pigment", "the dipole model has no pigments of infinite density");
+  if (request.material.pigment_absorption_per_scattering && cube && cube->scattering == 1)
+    faults.add("/material/cube/scattering",
+               "the dipole model needs finite coefficients of a pigment; ask for less than 1, or "
+               "for the transport model");
   if (std::fabs(request.material.anisotropy) > largest_anisotropy_of_dipole) {
     const bool in_coefficients = value.contains("/material/coefficients/g"_json_pointer);
     faults.add(in_coefficients ? "/material/coefficients/g" : "/material/anisotropy",

@@ -46,12 +46,14 @@ std::uint64_t first_histories(double standard_error) {
   return std::bit_ceil(static_cast<std::uint64_t>(2 / standard_error / replicates));
 }
 
-/// Histories of a replicate after `histories` gave `error`: a power of two, where low-discrepancy
-/// points are at their best.
+/// Histories of a replicate after `histories` gave `error`: 2 or 3 times a power of two, where
+/// low-discrepancy points are at their best.
 std::uint64_t next_histories(std::uint64_t histories, double error, double standard_error) {
   const double ratio = std::min(error / standard_error, 8.0);
-  const double wanted = static_cast<double>(histories) * ratio * ratio;
-  return std::max(2 * histories, std::bit_ceil(static_cast<std::uint64_t>(wanted)));
+  const auto wanted = static_cast<std::uint64_t>(static_cast<double>(histories) * ratio * ratio);
+  const std::uint64_t power = std::bit_ceil(wanted);
+  return std::max(histories + std::bit_floor(histories) / 2,
+                  wanted <= power / 4 * 3 ? power / 4 * 3 : power);
 }
 
 void trace(const SlabBody& body, std::uint64_t seed, std::vector<Trial*> trials, int threads) {
@@ -66,14 +68,37 @@ void trace(const SlabBody& body, std::uint64_t seed, std::vector<Trial*> trials,
   for (Trial* trial : trials) trial->histories = trial->wanted;
 }
 
+/// As make_interior, without the tables of the infinitely dense body: all that it reflects is
+/// known.
+Interior slab_interior(const Material& material, double thickness_mm) {
+  const Coefficients& c = material.coefficients;
+  if (std::isinf(c.sigma_s) && !std::isinf(c.sigma_a_peak)) return LambertianInterior{};
+  return make_interior(material, thickness_mm);
+}
+
+/// Pigments of infinite density reflect as a half space; with so many mean free paths a slab is one.
+Material with_finite_pigment(Material material, double thickness_mm) {
+  if (!material.absorption_per_scattering || !std::isinf(material.coefficients.sigma_s))
+    return material;
+  if (*material.absorption_per_scattering == 0) {
+    material.absorption_per_scattering.reset();  // white: the interfaced Lambertian slab
+    return material;
+  }
+  material.coefficients.sigma_s = 1e6 / thickness_mm;
+  material.coefficients.sigma_a_peak =
+      *material.absorption_per_scattering * material.coefficients.sigma_s;
+  return material;
+}
+
 }  // namespace
 
-SlabAppearance slab_appearance(const Material& material, double thickness_mm, double standard_error,
+SlabAppearance slab_appearance(const Material& given, double thickness_mm, double standard_error,
                                std::uint64_t seed, int threads) {
+  const Material material = with_finite_pigment(given, thickness_mm);
   const auto start = std::chrono::steady_clock::now();
   const SlabChannels channels = slab_channels(material, thickness_mm);
   const auto [least, peak] = std::minmax_element(channels.sigma_a.begin(), channels.sigma_a.end());
-  const SlabBody body{make_interface(material), make_interior(material, thickness_mm), *least};
+  const SlabBody body{make_interface(material), slab_interior(material, thickness_mm), *least};
   const bool walks = needs_walks(body);
 
   SlabDeveloper developer(channels, *peak);

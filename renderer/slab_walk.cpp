@@ -12,14 +12,14 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Weight, relative to the start, below which chance decides whether a path goes on: low where
-/// following it is cheap, high where each turn is a long walk.
-constexpr double roulette_of_scattered = 1.0 / 2, roulette_of_clear = 1.0 / 8;
-constexpr double roulette_of_microfacets = 1.0 / 2;
+/// Weight, relative to the start, down to which light is split at a face or a microfacet; from
+/// there on it goes one way as a whole, by chance. Unlike Russian roulette this keeps the energy of
+/// every history: the error of R is no larger than that of T and of what is absorbed.
+constexpr double least_split = 1.0 / 2, least_split_of_microfacets = 1.0 / 2;
 
 /// Deeper than this below both faces, in transport mean free paths, light crosses many of them in
 /// one step, and comes no nearer to a face than `jump_margin` on its way.
-constexpr double jump_depth = 32, jump_margin = 4;
+constexpr double jump_depth = 16, jump_margin = 4;
 /// Milne's problem: light leaves a thick medium as from `milne_length` transport mean free paths
 /// behind its face, which is the mean cosine of its flux; the density mu (milne_slope + mu) has
 /// that mean and follows Chandrasekhar's H (1960, section 16) within a few percent.
@@ -76,7 +76,7 @@ class Walk {
       if (!cross_rough(mu, interface_.ior, true, 1 - u.v)) return;
     }
     if constexpr (open) {
-      floor_ = weight_ * (scattering ? roulette_of_scattered : roulette_of_clear);
+      floor_ = weight_ * least_split;
       walk();
     }
   }
@@ -135,11 +135,11 @@ class Walk {
       length_ += to_face;
       z_ = mu_ > 0 ? 1 : 0;
       if (length_ > next_roulette_ && !outlives_absorption()) return;
-      if constexpr (smooth)
-        leave_smooth();
-      else if (!cross_rough(std::fabs(mu_), 1 / interface_.ior, false, rng.uniform_positive()))
+      if constexpr (smooth) {
+        if (!stays_smooth()) return;
+      } else if (!cross_rough(std::fabs(mu_), 1 / interface_.ior, false, rng.uniform_positive())) {
         return;
-      if (!survives()) return;
+      }
     }
   }
 
@@ -186,43 +186,61 @@ class Walk {
 
   // ---- faces
 
-  /// Sends out the transmitted share, keeps the reflected one.
-  void leave_smooth() {
+  /// Sends out the transmitted share, keeps the reflected one; false if nothing is kept.
+  bool stays_smooth() {
     const double reflectance = fresnel(std::fabs(mu_), 1 / interface_.ior);
-    leave(weight_ * (1 - reflectance), interface_.ior * interface_.ior * (1 - mu_ * mu_));
-    weight_ *= reflectance;
+    const double sin2 = interface_.ior * interface_.ior * (1 - mu_ * mu_);
     mu_ = -mu_;
+    if (weight_ >= floor_) {
+      leave(weight_ * (1 - reflectance), sin2);
+      weight_ *= reflectance;
+      return weight_ > 0;
+    }
+    if (sampler_.rng().uniform() < reflectance) return true;
+    leave(weight_, sin2);
+    return false;
   }
 
   /// From microfacet to microfacet: what escapes outwards is sent out, and one of the rays that
   /// escape into the slab stands for all of them (a reservoir of one: Chao 1982); false if there is
   /// none.
   bool cross_rough(double mu, double eta, bool from_outside, double u) {
+    if (!(mu > 0)) return false;  // along the face: no light crosses it
     const double arriving = weight_;
+    const bool splits = from_outside || arriving >= floor_;
     Rng& rng = sampler_.rng();
     double inward = 0, inward_weight = 0;
+    const auto escape = [&](Vec3 wi, double weight) {
+      if (!(weight > 0)) return;
+      if ((wi.z > 0) == from_outside) {
+        leave(weight, wi.x * wi.x + wi.y * wi.y);
+      } else if (open) {
+        inward_weight += weight;
+        if (rng.uniform() * inward_weight < weight) inward = std::fabs(wi.z);
+      }
+    };
     const Vec3 wo{std::sqrt(std::fmax(0.0, 1 - mu * mu)), 0, mu};
-    if (!(mu > 0)) return false;  // along the face: no light crosses it
     MicroVertex vertex(interface_.microfacets, eta, wo, u);
     while (true) {
       const MicroSample sample = vertex.sample(sampler_.next2());
-      for (const MicroBranch* branch : {&sample.reflected, &sample.transmitted}) {
-        const double weight = arriving * vertex.weight() * branch->weight * branch->escape;
-        if (!(weight > 0)) continue;
-        const Vec3 wi = vertex.to_first_side(branch->wi);
-        if ((wi.z > 0) == from_outside) {
-          leave(weight, wi.x * wi.x + wi.y * wi.y);
-        } else if (open) {
-          inward_weight += weight;
-          if (rng.uniform() * inward_weight < weight) inward = std::fabs(wi.z);
-        }
+      const MicroBranch &up = sample.reflected, &down = sample.transmitted;
+      const double weight = vertex.weight();
+      const double out_up = up.weight * up.escape, out_down = down.weight * down.escape;
+      if (splits && weight >= least_split_of_microfacets) {
+        escape(vertex.to_first_side(up.wi), arriving * weight * out_up);
+        escape(vertex.to_first_side(down.wi), arriving * weight * out_down);
+        if (!interface_.multiple_scattering) break;
+        vertex.advance(sample, rng.uniform_positive(), rng.uniform_positive());
+        continue;
+      }
+      const double choice = rng.uniform();
+      if (choice < out_up + out_down) {
+        escape(vertex.to_first_side(choice < out_up ? up.wi : down.wi), arriving * weight);
+        break;
       }
       if (!interface_.multiple_scattering) break;
       vertex.advance(sample, rng.uniform_positive(), rng.uniform_positive());
-      if (vertex.weight() < roulette_of_microfacets) {
-        if (rng.uniform() * roulette_of_microfacets >= vertex.weight()) break;
-        vertex.set_weight(roulette_of_microfacets);
-      }
+      vertex.set_weight(weight);
     }
     weight_ = inward_weight;
     mu_ = z_ > 0 ? -inward : inward;
@@ -238,16 +256,8 @@ class Walk {
     tally_.add(exit, weight, length_);
   }
 
-  // ---- chance; unbiased: the weight lost to those that end is given to those that survive
-
-  bool survives() {
-    if (weight_ >= floor_) return true;
-    if (sampler_.rng().uniform() * floor_ >= weight_) return false;
-    weight_ = floor_;
-    return true;
-  }
-
-  /// Past every length that halves even the least absorbed channel, half of the paths go on.
+  /// Russian roulette: past every length that halves even the least absorbed channel, half of the
+  /// paths go on, with the weight of all.
   bool outlives_absorption() {
     while (length_ > next_roulette_) {
       if (sampler_.rng().uniform() < 0.5) return false;
@@ -276,7 +286,9 @@ void walk_slab(const SlabBody& body, Incidence incidence, std::uint64_t key, std
         using Interior = std::decay_t<decltype(interior)>;
         constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
         constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
-        if constexpr (scattering || (!smooth && !std::is_same_v<Interior, LambertianInterior>)) {
+        constexpr bool empty =
+            std::is_same_v<Interior, ClearInterior> || std::is_same_v<Interior, BlackInterior>;
+        if constexpr (scattering || (!smooth && empty)) {
           Walk walk(body, interface, interior, incidence, jumps, tally);
           // The low-discrepancy points are 2^16 to a key.
           for (std::uint64_t i = first; i < first + count; ++i)

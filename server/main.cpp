@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "server/cli.h"
+#include "server/cli_appearance.h"
 
 namespace {
 
@@ -47,6 +48,19 @@ int main(int argc, char** argv) {
   render_verb->add_option("--sample", render.sample, "Which sample of the pixel")
       ->needs(pixel_option);
 
+  AppearanceOptions appearance;
+  CLI::App* appearance_verb = app.add_subcommand(
+      "appearance", "Measures a flat slab of the material: reflectance, transmittance, haze, ...");
+  appearance_verb
+      ->add_option("request", appearance.request, "The request, JSON; - reads standard input")
+      ->required();
+  appearance_verb->add_option("-o,--output", appearance.output,
+                              "A file for the answer, JSON; else it goes to standard output");
+  appearance_verb
+      ->add_option("--threads", appearance.threads, "At most this many threads; 0: all cores")
+      ->check(CLI::Range(0, 4096));
+  appearance_verb->add_option("--config", appearance.config, "Another service.json");
+
   ServeOptions serve;
   CLI::App* serve_verb = app.add_subcommand("serve", "Serves renders over HTTP");
   serve_verb->add_option("--config", serve.config, "Another service.json");
@@ -65,6 +79,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : exit_bad_request;
   }
   if (serve_verb->parsed()) return run_serve(serve);
+  if (appearance_verb->parsed()) return run_appearance(appearance);
   if (pixel_option->count() > 0) {
     render.pixel = pixel_of(pixel);
     if (!render.pixel) {

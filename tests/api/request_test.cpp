@@ -131,6 +131,9 @@ TEST(Request, TheDipoleModelSaysWhatItCannotServe) {
                        R"({"model":"dipole","material":{"coefficients":
                            {"sigma_a_peak":0,"alpha":0,"sigma_s":1,"g":0.99}}})"),
               HasSubstr("similarity"));
+  EXPECT_THAT(pointers(R"({"model":"dipole","material":{"pigment":{"absorption_per_scattering":1},
+                            "cube":{"absorption":0,"roughness":0,"scattering":1}}})"),
+              testing::Contains("/material/cube/scattering"));
   EXPECT_THAT(pointers(request_with(R"("model":"dipole","explorable":true)")),
               testing::Contains("/explorable"));
 }

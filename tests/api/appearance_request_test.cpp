@@ -1,0 +1,101 @@
+#include "api/appearance_request.h"
+
+#include <nlohmann/json.hpp>
+
+#include "tests/api/fixture.h"
+
+namespace translucube::api {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+std::string slab_of(const std::string& members) {
+  return R"({"material":{"cube":)" + some_cube + R"(},"slab":{"thickness_mm":0.2})" + members + "}";
+}
+
+std::vector<std::string> faults_of(const std::string& text) {
+  const auto result = parse_appearance_request(text, shipped_catalog());
+  std::vector<std::string> all;
+  if (const auto* problem = std::get_if<Problem>(&result))
+    for (const Fault& fault : problem->faults) all.push_back(fault.pointer);
+  return all;
+}
+
+json answer_to(const std::string& text) {
+  const auto request =
+      std::get<AppearanceRequest>(parse_appearance_request(text, shipped_catalog()));
+  return json::parse(
+      appearance_json(request, measure(request, shipped_catalog(), 1), shipped_catalog()));
+}
+
+TEST(AppearanceRequest, TheShortestHasDefaults) {
+  const auto request =
+      std::get<AppearanceRequest>(parse_appearance_request(slab_of(""), shipped_catalog()));
+  EXPECT_EQ(request.thickness_mm, 0.2);
+  EXPECT_EQ(request.standard_error, 1e-3);
+  EXPECT_EQ(request.seed, 1u);
+  EXPECT_EQ(request.material.ior, 1.5);
+}
+
+TEST(AppearanceRequest, FaultsHavePointers) {
+  EXPECT_THAT(faults_of("{}"), UnorderedElementsAre("/material", "/slab"));
+  for (const char* thickness : {"0", "-1", "1e7", "\"1\"", "null"})
+    EXPECT_THAT(faults_of(R"({"material":{"cube":)" + some_cube + R"(},"slab":{"thickness_mm":)" +
+                          thickness + "}}"),
+                ElementsAre("/slab/thickness_mm"))
+        << thickness;
+  EXPECT_THAT(faults_of(slab_of(R"(,"quality":{"standard_error":0})")),
+              ElementsAre("/quality/standard_error"));
+  EXPECT_THAT(faults_of(slab_of(R"(,"quality":{"samples":4})")),
+              UnorderedElementsAre("/quality/standard_error", "/quality/samples"));
+  EXPECT_THAT(faults_of(slab_of(R"(,"seed":-1,"scene":{})")),
+              UnorderedElementsAre("/seed", "/scene"));
+  EXPECT_THAT(faults_of(R"({"material":{"cube":)" + some_cube +
+                        R"(,"ior":5,"anisotropy":1,"pigment":{"absorption_per_scattering":1}},)" +
+                        R"("slab":{"thickness_mm":1}})"),
+              UnorderedElementsAre("/material/ior", "/material/anisotropy", "/material/pigment"));
+}
+
+TEST(AppearanceAnswer, HasEveryQuantityWithItsError) {
+  const json answer = answer_to(slab_of(R"(,"quality":{"standard_error":0.01})"));
+  for (const char* incidence : {"normal", "diffuse"}) {
+    const json& at = answer[incidence];
+    for (const auto& [object, keys] : {std::pair<std::string, std::vector<std::string>>{
+                                           "reflectance", {"specular", "diffuse", "total"}},
+                                       {"transmittance", {"regular", "diffuse", "total"}},
+                                       {"reflected", {"xyz", "lab", "bands"}},
+                                       {"transmitted", {"xyz", "lab", "bands"}}})
+      for (const std::string& key : keys) {
+        const std::size_t count = key == "bands" ? 20 : 3;
+        EXPECT_EQ(at[object][key].size(), count) << object << key;
+        EXPECT_EQ(at[object]["standard_error"][key].size(), count) << object << key;
+      }
+    for (int c = 0; c < 3; ++c) EXPECT_LE(at["reflectance"]["standard_error"]["total"][c], 0.01);
+  }
+  EXPECT_TRUE(answer["normal"]["transmitted"]["haze"].is_number());
+  EXPECT_TRUE(answer["normal"]["transmitted"]["standard_error"]["clarity"].is_number());
+  EXPECT_EQ(answer["bands_nm"].front(), 380);
+  EXPECT_EQ(answer["bands_nm"].back(), 780);
+  EXPECT_EQ(answer["bands_nm"].size(), 21u);
+  EXPECT_EQ(answer["transport"], "walk");
+  EXPECT_EQ(answer["slab"]["thickness_mm"], 0.2);
+  EXPECT_TRUE(answer["material"].contains("coefficients"));
+}
+
+TEST(AppearanceAnswer, SaysNullWhereThereIsNothingToSay) {
+  const json black = answer_to(
+      R"({"material":{"cube":{"absorption":1,"roughness":0,"scattering":0.5}},"slab":{"thickness_mm":1}})");
+  EXPECT_TRUE(black["normal"]["transmitted"]["haze"].is_null());
+  EXPECT_TRUE(black["normal"]["transmitted"]["clarity"].is_null());
+  const json rgb = answer_to(
+      R"({"material":{"coefficients":{"sigma_a":[0.1,1,2],"alpha":0,"sigma_s":0}},"slab":{"thickness_mm":1}})");
+  EXPECT_TRUE(rgb["bands_nm"].is_null());
+  EXPECT_TRUE(rgb["normal"]["reflected"]["bands"].is_null());
+  EXPECT_EQ(rgb["samples"], 0);
+}
+
+}  // namespace
+}  // namespace translucube::api
