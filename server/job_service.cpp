@@ -79,6 +79,16 @@ void JobService::clean_artifacts() {
   }
 }
 
+/// Nobody can ask for these files any more: what cannot be removed now, because a worker is writing
+/// there for a moment yet, is removed by that worker or at the next start.
+void JobService::discard_files(const std::string& id) {
+  try {
+    artifacts_.remove_all(id);
+  } catch (const FileError& error) {
+    spdlog::warn("render {}: {}", id, error.what());
+  }
+}
+
 std::optional<Problem> JobService::refusal() const {
   const std::lock_guard lock(mutex_);
   if (!stopping_) return std::nullopt;
@@ -149,7 +159,7 @@ Result<api::RenderStatus> JobService::cancel(const std::string& id) {
     if (!job) return no_such_render();
     if (job->state == api::JobState::canceled) {
       workers_->stop_job(id);
-      artifacts_.remove_all(id);
+      discard_files(id);
       changed();
     }
     return status_of(*job);
@@ -161,13 +171,7 @@ std::optional<Problem> JobService::remove(const std::string& id) {
   if (const auto* problem = std::get_if<Problem>(&result)) return *problem;
   if (!std::get<bool>(result)) return no_such_render();
   workers_->stop_job(id);
-  try {
-    artifacts_.remove_all(id);
-  } catch (const FileError& error) {
-    // Nobody can ask for the files any more; a worker that just wrote one, or the next start,
-    // removes the rest.
-    spdlog::warn("{}", error.what());
-  }
+  discard_files(id);
   changed();
   return std::nullopt;
 }
