@@ -66,16 +66,18 @@ void JobService::changed() {
   change_.notify_all();
 }
 
-/// Removes the files of renders that were removed or canceled while a crash came between, and all
-/// derived pictures: the colour config may be another one since they were made.
+/// Removes what a crash left: files of renders that were removed or ended without an image, and
+/// beside an image its checkpoints and what a late double of its last task wrote. Derived pictures
+/// go too: the colour config may be another one since they were made.
 void JobService::clean_artifacts() {
   for (const std::string& id : artifacts_.ids()) {
     if (!is_id(id)) continue;
     const std::optional<Job> job = store_.find(id);
     if (!job || job->state == api::JobState::canceled || job->state == api::JobState::failed)
       artifacts_.remove_all(id);
-    for (const std::string& name : artifacts_.names(id))
-      if (is_derived(name)) artifacts_.remove(id, name);
+    else if (job->image)
+      for (const std::string& name : artifacts_.names(id))
+        if (name != *job->image) artifacts_.remove(id, name);
   }
 }
 

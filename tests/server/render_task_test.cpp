@@ -28,7 +28,8 @@ TEST(RenderTaskTest, AJobRunsThroughItsPassesToAnImage) {
   EXPECT_EQ(renderer.builds, 1) << "the scene is kept between the tasks of a job";
   EXPECT_EQ(nlohmann::json::parse(*status.stats)["samples"], 16);
   EXPECT_FALSE(tested.exr(id).empty());
-  EXPECT_EQ(tested.artifacts.names(id).size(), 1u) << "checkpoints are gone";
+  EXPECT_TRUE(eventually([&] { return tested.artifacts.names(id).size() == 1; }))
+      << "checkpoints are gone";
 }
 
 TEST(RenderTaskTest, TheImageCarriesItsCanonicalRequest) {
