@@ -84,7 +84,9 @@ void ArtifactStore::remove(const std::string& id, const std::string& name) {
 void ArtifactStore::remove_all(const std::string& id) {
   std::error_code error;
   fs::remove_all(root_ / id, error);
-  if (error) throw FileError("cannot remove " + (root_ / id).string() + ": " + error.message());
+  // Another thread may be removing the same files.
+  if (error && error != std::errc::no_such_file_or_directory)
+    throw FileError("cannot remove " + (root_ / id).string() + ": " + error.message());
 }
 
 std::vector<std::string> ArtifactStore::ids() const {

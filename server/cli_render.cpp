@@ -52,6 +52,15 @@ struct Output {
   ImageForm form;
 };
 
+/// The finished file takes the place of what is there: never of a device, a pipe, a folder.
+void check_place(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder))
+    throw Refusal{exit_failure, folder.string() + ": there is no such folder\n"};
+  if (fs::exists(file) && !fs::is_regular_file(file))
+    throw Refusal{exit_failure, file.string() + ": is not an ordinary file\n"};
+}
+
 /// All that can be wrong with the outputs is told before the work begins.
 std::vector<Output> checked_outputs(const RenderOptions& options, const ColorConfig& colors) {
   std::vector<Output> outputs;
@@ -61,12 +70,7 @@ std::vector<Output> checked_outputs(const RenderOptions& options, const ColorCon
     const auto format = image_format(extension.empty() ? "" : extension.substr(1));
     if (!format)
       throw Refusal{exit_bad_request, file.string() + ": must end in .exr, .png, .tiff or .jpeg\n"};
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    if (!fs::is_directory(folder))
-      throw Refusal{exit_failure, folder.string() + ": there is no such folder\n"};
-    // The finished file takes the place of what is there: never of a device, a pipe, a folder.
-    if (fs::exists(file) && !fs::is_regular_file(file))
-      throw Refusal{exit_failure, file.string() + ": is not an ordinary file\n"};
+    check_place(file);
     ImageQuery query{*format, {}, {}, {}};
     if (*format != ImageFormat::exr) {
       for_display = true;
@@ -84,6 +88,7 @@ std::vector<Output> checked_outputs(const RenderOptions& options, const ColorCon
   }
   if ((options.display || options.view) && !for_display)
     throw Refusal{exit_bad_request, "--display and --view are for PNG, TIFF and JPEG outputs\n"};
+  if (options.stats) check_place(*options.stats);
   return outputs;
 }
 

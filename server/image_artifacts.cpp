@@ -76,8 +76,6 @@ std::variant<ImageForm, Problem> image_form(const ImageQuery& query,
   return form;
 }
 
-bool is_derived(const std::string& artifact) { return artifact.starts_with("derived-"); }
-
 void write_form(const std::filesystem::path& file, Image image, const ImageForm& form,
                 const ColorConfig& colors, const std::string& canonical_request) {
   ImageMetadata metadata{canonical_request, form.colorspace};

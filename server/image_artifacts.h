@@ -36,9 +36,6 @@ std::variant<ImageForm, api::Problem> image_form(const ImageQuery& query,
 void write_form(const std::filesystem::path& file, Image image, const ImageForm& form,
                 const ColorConfig& colors, const std::string& canonical_request);
 
-/// True for the artifacts that image_artifact makes and can make again.
-bool is_derived(const std::string& artifact);
-
 struct ImageFile {
   std::shared_ptr<const OpenFile> file;
   std::string mime_type;

@@ -26,7 +26,8 @@ HttpResponse body_response(const HttpRequest& request, const ImageFile& image) {
   // A range of another version of the picture would not fit to what the client has (If-Range).
   const std::string_view if_range = request.header("if-range");
   const bool same_version = if_range.empty() || if_range == image.etag;
-  const auto range = requested_range(same_version ? request.header("range") : "", size);
+  const bool may_be_part = request.method == "GET" && same_version;
+  const auto range = requested_range(may_be_part ? request.header("range") : "", size);
   const std::string of_size = '/' + std::to_string(size);
 
   if (std::holds_alternative<UnsatisfiableRange>(range)) {

@@ -66,16 +66,28 @@ void JobService::changed() {
   change_.notify_all();
 }
 
-/// Removes the files of renders that were removed or canceled while a crash came between, and all
-/// derived pictures: the colour config may be another one since they were made.
+/// Removes what a crash left: files of renders that were removed or ended without an image, and
+/// beside an image its checkpoints and what a late double of its last task wrote. Derived pictures
+/// go too: the colour config may be another one since they were made.
 void JobService::clean_artifacts() {
   for (const std::string& id : artifacts_.ids()) {
     if (!is_id(id)) continue;
     const std::optional<Job> job = store_.find(id);
     if (!job || job->state == api::JobState::canceled || job->state == api::JobState::failed)
       artifacts_.remove_all(id);
-    for (const std::string& name : artifacts_.names(id))
-      if (is_derived(name)) artifacts_.remove(id, name);
+    else if (job->image)
+      for (const std::string& name : artifacts_.names(id))
+        if (name != *job->image) artifacts_.remove(id, name);
+  }
+}
+
+/// Nobody can ask for these files any more: what cannot be removed now, because a worker is writing
+/// there for a moment yet, is removed by that worker or at the next start.
+void JobService::discard_files(const std::string& id) {
+  try {
+    artifacts_.remove_all(id);
+  } catch (const FileError& error) {
+    spdlog::warn("render {}: {}", id, error.what());
   }
 }
 
@@ -149,7 +161,7 @@ Result<api::RenderStatus> JobService::cancel(const std::string& id) {
     if (!job) return no_such_render();
     if (job->state == api::JobState::canceled) {
       workers_->stop_job(id);
-      artifacts_.remove_all(id);
+      discard_files(id);
       changed();
     }
     return status_of(*job);
@@ -161,13 +173,7 @@ std::optional<Problem> JobService::remove(const std::string& id) {
   if (const auto* problem = std::get_if<Problem>(&result)) return *problem;
   if (!std::get<bool>(result)) return no_such_render();
   workers_->stop_job(id);
-  try {
-    artifacts_.remove_all(id);
-  } catch (const FileError& error) {
-    // Nobody can ask for the files any more; a worker that just wrote one, or the next start,
-    // removes the rest.
-    spdlog::warn("{}", error.what());
-  }
+  discard_files(id);
   changed();
   return std::nullopt;
 }

@@ -72,6 +72,7 @@ class JobService {
  private:
   std::optional<api::Problem> refusal() const;
   void clean_artifacts();
+  void discard_files(const std::string& id);
   void changed();
 
   const api::Catalog& catalog_;

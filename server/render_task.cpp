@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <new>
 #include <thread>
 
 #include "api/parse.h"
 #include "api/render_status.h"
+#include "renderer/deadline.h"
 #include "renderer/image_io.h"
 #include "server/task_watch.h"
 
@@ -88,23 +90,26 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
     if (!workshop_.store.release(task)) tidy(task.job_id);
     return;
   }
+  const TaskWatch watch(workshop_.store, task, work);
   if (!take_in_hand(task, *job, work.get_token())) return;
-
-  TaskWatch::TimePoint deadline = TaskWatch::no_deadline;
-  const auto start = steady_clock::now();
-  if (const auto* target = std::get_if<TimeTarget>(&hand_.quality); target && task.pass.index > 0)
-    deadline = start + std::chrono::duration_cast<steady_clock::duration>(
-                           std::chrono::duration<double>(target->seconds - hand_.seconds));
 
   // A crash may have come between the partial film and its entry in the store.
   std::optional<PassFilm> pass = workshop_.artifacts.read_pass(task.job_id, task.pass);
   double task_seconds = pass ? pass->cpu_seconds / threads() : 0;
   const bool stored = pass.has_value();
   if (!pass) {
-    const TaskWatch watch(workshop_.store, task, work, deadline);
+    const auto start = steady_clock::now();
+    std::optional<Deadline> deadline;
+    double time_left = std::numeric_limits<double>::infinity();
+    // The first pass always ends: a picture of nothing is of no use.
+    if (const auto* target = std::get_if<TimeTarget>(&hand_.quality);
+        target && task.pass.index > 0) {
+      time_left = target->seconds - hand_.seconds;
+      deadline.emplace(work, time_left);
+    }
     pass = workshop_.engine.trace(*hand_.scene, task.pass, workshop_.threads, work.get_token());
     task_seconds = seconds_since(start);
-    if (!pass && watch.out_of_time()) {
+    if (!pass && task_seconds >= time_left) {
       finish(task, task_seconds, false);
       return;
     }

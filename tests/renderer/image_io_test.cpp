@@ -17,6 +17,10 @@
 #include <thread>
 #include <vector>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
 namespace translucube {
 namespace {
 
@@ -264,6 +268,10 @@ TEST_F(ImageIo, CutOffFilesAreRefused) {
     write_image(path("whole"), ramp(200, 100), format, {"{}", "sRGB/plain"});
     const std::string bytes = bytes_of(path("whole"));
     const auto cut = write_bytes("cut", bytes.substr(0, bytes.size() / 2));
+#ifdef __SANITIZE_ADDRESS__
+    // libpng leaves through a longjmp that skips a destructor of OpenImageIO's: 31 bytes, not ours.
+    const __lsan::ScopedDisabler no_leak_check;
+#endif
     EXPECT_THROW(read_image(cut), ImageError) << name(format);
   }
 }

@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "server/image_artifacts.h"
 #include "tests/server/fixture.h"
 
 namespace translucube::server {
@@ -156,36 +155,6 @@ TEST(ArtifactStoreTest, ADiskThatIsFullIsAnErrorAndLeavesWhatWasThere) {
             0);
   EXPECT_EQ(store.open("a", "x.bin")->read_all(), "old");
   EXPECT_THAT(store.names("a"), ElementsAre("x.bin"));
-}
-
-TEST(ArtifactStoreTest, NoPictureFormatLosesTheNewsOfAFullDisk) {
-  const ColorConfig colors(api::load_catalog(test::config_path).display_config);
-  Image image(512, 512);
-  // Noise, so that no compression makes it fit.
-  std::uint32_t state = 1;
-  for (float& value : image.pixels)
-    value = static_cast<float>((state = state * 1664525u + 1013904223u) >> 8) / 16777216.0f;
-  for (const ImageFormat format :
-       {ImageFormat::png, ImageFormat::exr, ImageFormat::tiff, ImageFormat::jpeg}) {
-    const TempFolder folder;
-    ArtifactStore store(folder.path());
-    const auto form = std::get<ImageForm>(image_form({format, {}, {}, {}}, colors.displays()));
-    EXPECT_EQ(under_file_limit(50'000,
-                               [&] {
-                                 try {
-                                   store.write("a", "picture." + std::string(name(format)),
-                                               [&](const std::filesystem::path& file) {
-                                                 write_form(file, image, form, colors, "{}");
-                                               });
-                                 } catch (const std::exception&) {
-                                   return 0;
-                                 }
-                                 return 1;
-                               }),
-              0)
-        << name(format);
-    EXPECT_THAT(store.names("a"), IsEmpty()) << name(format);
-  }
 }
 
 }  // namespace

@@ -220,7 +220,7 @@ TEST(JobServiceTest, ImageQueriesThatFitNothingAreRefusedWithEveryFault) {
   EXPECT_EQ(faults({ImageFormat::exr, "sRGB", "plain", "sRGB"}), "?colorspace ?display ?view ");
 }
 
-TEST(JobServiceTest, DerivedPicturesOfAnEarlierRunAreMadeAnew) {
+TEST(JobServiceTest, WhatCanBeMadeAnewIsRemovedAtTheStart) {
   const TempFolder folder;
   FakeRenderer renderer;
   std::string id;
@@ -228,7 +228,10 @@ TEST(JobServiceTest, DerivedPicturesOfAnEarlierRunAreMadeAnew) {
     TestService tested(folder.path(), renderer.engine());
     id = tested.wait(tested.submit(small_request(4)).id).id;
     std::get<ImageFile>(tested.service.image(id, {}));
-    EXPECT_EQ(tested.artifacts.names(id).size(), 2u);
+    // What a crash between the end of the job and the removal of its checkpoints leaves.
+    tested.artifacts.write(id, "film-4.bin", "left over");
+    tested.artifacts.write(id, "image-9-9.exr", "of a late double");
+    EXPECT_GE(tested.artifacts.names(id).size(), 4u);
   }
   TestService tested(folder.path(), renderer.engine());
   EXPECT_EQ(tested.artifacts.names(id).size(), 1u);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -53,6 +54,15 @@ class Process {
   }
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
+
+  /// True once the process takes this signal as a call instead of dying of it.
+  bool blocks(int signal) const {
+    std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+    for (std::string text; std::getline(status, text);)
+      if (text.starts_with("SigBlk:"))
+        return (std::stoull(text.substr(7), nullptr, 16) >> (signal - 1) & 1) != 0;
+    return false;
+  }
 
   void kill(int signal) const { ::kill(pid_, signal); }
 

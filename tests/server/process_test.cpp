@@ -244,11 +244,27 @@ TEST(CommandLineTest, ExplainsOneSampleOfOnePixel) {
   EXPECT_EQ(run_translucube({"render", "-", "--pixel", "x"}, small_request(16)).status, 2);
 }
 
+TEST(CommandLineTest, AFullDiskIsAnErrorInEveryFormatAndLeavesNothing) {
+  for (const char* name : {"a.exr", "a.png", "a.tiff", "a.jpg"}) {
+    const TempFolder folder;
+    // Ten or twenty kilobytes (shells differ) are all that a file may have here.
+    Process process(
+        {"/bin/sh", "-c",
+         std::string("ulimit -f 20; trap '' XFSZ; exec " TRANSLUCUBE_BINARY " render - -o ") +
+             (folder / name).string()},
+        small_request(4, 1, 256));
+    EXPECT_EQ(process.wait(), 1) << name;
+    EXPECT_THAT(process.errors(), testing::Not(IsEmpty())) << name;
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << name;
+  }
+}
+
 TEST(CommandLineTest, AnInterruptEndsItAndLeavesNothing) {
   const TempFolder folder;
   Process process({TRANSLUCUBE_BINARY, "render", "-", "-o", (folder / "a.exr").string()},
                   small_request(1'000'000, 1, 128));
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  ASSERT_TRUE(eventually([&] { return process.blocks(SIGINT); }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
   const auto start = std::chrono::steady_clock::now();
   process.kill(SIGINT);
   EXPECT_EQ(process.wait(), 130);
