@@ -76,7 +76,8 @@ Interior slab_interior(const Material& material, double thickness_mm) {
   return make_interior(material, thickness_mm);
 }
 
-/// Pigments of infinite density reflect as a half space; with so many mean free paths a slab is one.
+/// Pigments of infinite density reflect as a half space; with so many mean free paths a slab is
+/// one.
 Material with_finite_pigment(Material material, double thickness_mm) {
   if (!material.absorption_per_scattering || !std::isinf(material.coefficients.sigma_s))
     return material;
@@ -98,7 +99,8 @@ SlabAppearance slab_appearance(const Material& given, double thickness_mm, doubl
   const auto start = std::chrono::steady_clock::now();
   const SlabChannels channels = slab_channels(material, thickness_mm);
   const auto [least, peak] = std::minmax_element(channels.sigma_a.begin(), channels.sigma_a.end());
-  const SlabBody body{make_interface(material), slab_interior(material, thickness_mm), *least};
+  const SlabBody body{make_interface(material, true), slab_interior(material, thickness_mm),
+                      *least};
   const bool walks = needs_walks(body);
 
   SlabDeveloper developer(channels, *peak);

@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Furnace, HardCase,
                                          Case{"backward_0_99", 1, 0, 100, 1.5, -0.99, 64},
                                          Case{"a_micrometre", 1e-3, 0.1, 1e4, 1.5, 0, 128},
                                          Case{"a_kilometre", 1e6, 0.1, 1e-5, 1.5, 0, 128}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& hard) { return std::string(hard.param.name); });
 
 TEST(HardCase, ASunOf34000StaysFiniteAndItsMeanIsThatOfAnotherSeed) {
   for (const double sigma_s : {0.0, 1.0, 10.0}) {

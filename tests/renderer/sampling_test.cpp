@@ -31,9 +31,9 @@ TEST(Sampling, VisibleNormalsFollowTheirDensityFromBothSides) {
       const Ggx ggx{alpha};
       const Vec3 w = from_cosine(mu);
       Rng rng(7);
-      const auto r =
-          chi2_test([&] { return std::optional(ggx.sample_visible(w, rng.uniform2())); },
-                    [&](Vec3 m) { return ggx.visible_d(w, m); }, {0, 0, 1}, mu > 0 ? alpha / 8 : 0.1, samples);
+      const auto r = chi2_test([&] { return std::optional(ggx.sample_visible(w, rng.uniform2())); },
+                               [&](Vec3 m) { return ggx.visible_d(w, m); }, {0, 0, 1},
+                               mu > 0 ? alpha / 8 : 0.1, samples);
       expect_sampled(r, 24, "alpha " + std::to_string(alpha) + " cos " + std::to_string(mu));
       EXPECT_NEAR(r.total_pdf, 1, 5e-3) << alpha << " " << mu;
     }

@@ -20,9 +20,9 @@ TEST(WhiteFurnace, ASmoothBodyOfAnyDensityAndIndexVanishes) {
     for (const double ior : {1.0, 1.33, 1.5, 2.5}) {
       Scene scene = body(Sphere{}, material(ior, 0, sigma_s_of(s)));
       look_from_afar(scene, 0.7, 32);  // the whole image lies on the body
-      const Estimate e = image_mean(trace(scene, s > 0.95 && s < 1 ? 256 : 512));
+      const Estimate e = image_mean(trace(scene, 512));
       EXPECT_NEAR(e.mean, 1, 1e-3) << "s " << s << " ior " << ior << " +- " << e.standard_error;
-      EXPECT_LT(e.standard_error, 3.5e-4);
+      EXPECT_LT(e.standard_error, 3.5e-4) << s << " " << ior;
     }
 }
 
@@ -31,19 +31,6 @@ TEST(WhiteFurnace, AnisotropicScatteringLosesNothing) {
     Scene scene = body(Sphere{}, material(1.5, 0, 5, g));
     look_from_afar(scene, 0.7, 32);
     EXPECT_NEAR(image_mean(trace(scene, 256)).mean, 1, 1e-3) << "g " << g;
-  }
-}
-
-// Single-scattering GGX loses the light that would meet a second microfacet: what is left is known
-// from Mitsuba 0.6 (shared/peers.md), pbrt-v4 within .03.
-TEST(WhiteFurnace, ARoughBodyKeepsWhatSingleScatteringKeeps) {
-  const std::pair<double, double> kept[] = {{.05, .983}, {.1, .945}, {.25, .787}, {.5, .556}};
-  for (const auto& [alpha, expected] : kept) {
-    Scene scene = body(Sphere{}, material(1.5, alpha, 0));
-    look_from_afar(scene, 1.0, 64);
-    const double covered = std::numbers::pi / 4;
-    const Estimate e = image_mean(trace(scene, 64));
-    EXPECT_NEAR((e.mean - (1 - covered)) / covered, expected, 0.01) << "alpha " << alpha;
   }
 }
 
