@@ -44,10 +44,18 @@ void read_quality(const json& value, const std::string& pointer, const Limits& l
   quality.refuse_unknown_keys();
 }
 
-/// Parts of the contract that this version reads and checks but does not serve.
-void refuse_what_is_not_served_yet(const RenderRequest& request, Faults& faults) {
-  if (request.explorable)
-    faults.add("/explorable", "explorable renders are not served by this version yet");
+/// An explorable film is so many times as large as another: the same memory serves this share of
+/// the pixels.
+constexpr std::uint64_t explorable_share = 16;
+
+void check_explorable(const RenderRequest& request, const Limits& limits, Faults& faults) {
+  if (!request.explorable) return;
+  if (request.material.pigment_absorption_per_scattering)
+    faults.add("/explorable", "the absorption of a pigment is bound to its scattering");
+  const std::uint64_t most = std::max<std::uint64_t>(1, limits.pixels / explorable_share);
+  if (std::uint64_t(request.width) * std::uint64_t(request.height) > most)
+    faults.add("/image", "width x height must be at most " + std::to_string(most) +
+                             " where explorable is true");
 }
 
 /// Similarity replaces anisotropic scattering by isotropic scattering of sigma_s (1 - g). Beyond
@@ -109,7 +117,7 @@ std::variant<RenderRequest, Problem> parse_render_request(std::string_view text,
   auto& [value, faults] = std::get<JsonDocument>(read);
   RenderRequest request = catalog.defaults;
   read_request(value, "", catalog, MaterialPoint::required, request, faults);
-  refuse_what_is_not_served_yet(request, faults);
+  check_explorable(request, catalog.limits, faults);
   refuse_what_the_model_cannot_serve(value, request, faults);
   if (!faults.empty()) return invalid_request(faults);
   return request;

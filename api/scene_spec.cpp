@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "api/parse.h"
 #include "renderer/material_cube.h"
@@ -111,6 +112,14 @@ SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
   spec.width = request.width;
   spec.height = request.height;
   spec.seed = request.seed;
+  if (request.explorable) {
+    // The densest that a redevelopment can ask for, short of infinite.
+    const CubePoint nearly_black{std::nextafter(1.0, 0.0), 0, 0};
+    const double peak = spec.material.coefficients.sigma_a_peak;
+    const double densest =
+        from_cube(nearly_black, 0, request.material.reference_thickness_mm).sigma_a_peak;
+    spec.explorable = Explorable{std::isinf(peak) ? densest : std::max(densest, peak)};
+  }
   return spec;
 }
 

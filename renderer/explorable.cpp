@@ -176,6 +176,10 @@ Image develop_explorable(const ExplorableFilm& film, const Absorber& absorber, d
   return develop_explorable(film, make_lane(absorber, sigma_a_peak * film.unit_mm), threads);
 }
 
+Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int threads) {
+  return develop_explorable(film, scene.lanes.front(), threads);
+}
+
 ExplorableFilm explorable_film(const Scene& scene, const Film& film) {
   ExplorableFilm result;
   result.width = film.width;

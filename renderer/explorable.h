@@ -87,6 +87,9 @@ Image develop_explorable(const ExplorableFilm& film, const Lane& lane, int threa
 Image develop_explorable(const ExplorableFilm& film, const Absorber& absorber, double sigma_a_peak,
                          int threads = 0);
 
+/// The same for the material of the film's own scene.
+Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int threads = 0);
+
 /// Compressed multi-channel EXR of half floats: a layer of R, G and B for each bin; the lengths,
 /// the scales, the unit and the canonical request in its header. Throw ImageError.
 void write_explorable(const std::filesystem::path& file, const ExplorableFilm& film,

@@ -19,7 +19,7 @@ std::filesystem::path config_file(const std::string& named);
 struct RenderOptions {
   std::string request;  ///< a file, or "-" for standard input
   std::vector<std::filesystem::path> outputs;
-  std::optional<std::filesystem::path> stats;
+  std::optional<std::filesystem::path> stats, explorable_out;
   std::string config;
   std::optional<std::string> display, view;
   int threads = 0;  ///< 0: all cores
@@ -29,6 +29,18 @@ struct RenderOptions {
 
 /// Renders, or explains one sample of one pixel. The exit status; messages go to standard error.
 int run_render(const RenderOptions& options);
+
+struct DevelopOptions {
+  std::filesystem::path film;  ///< an explorable film, of --explorable-out
+  std::vector<std::filesystem::path> outputs;
+  std::string config;
+  std::optional<std::string> display, view, absorber;
+  std::optional<double> absorption;
+  int threads = 0;  ///< 0: all cores
+};
+
+/// Develops an explorable film for another absorber. The exit status.
+int run_develop(const DevelopOptions& options);
 
 struct ServeOptions {
   std::string config;

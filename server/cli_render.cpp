@@ -12,25 +12,17 @@
 
 #include "api/parse.h"
 #include "api/render_status.h"
-#include "renderer/image_io.h"
+#include "renderer/explorable.h"
 #include "renderer/render.h"
 #include "server/cli.h"
+#include "server/cli_outputs.h"
 #include "server/file.h"
-#include "server/image_artifacts.h"
 #include "server/signals.h"
 
 namespace translucube::server {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Ends the command with a message and an exit status.
-struct Refusal {
-  int status;
-  std::string message;
-};
-
-Refusal refusal_of(const api::Problem& problem) { return {exit_bad_request, to_text(problem)}; }
 
 std::string read_document(const std::string& name, std::uint64_t limit) {
   std::ifstream file;
@@ -45,51 +37,6 @@ std::string read_document(const std::string& name, std::uint64_t limit) {
   std::istreambuf_iterator<char> at(in), end;
   for (; at != end && text.size() <= limit; ++at) text += *at;
   return text;
-}
-
-struct Output {
-  fs::path file;
-  ImageForm form;
-};
-
-/// The finished file takes the place of what is there: never of a device, a pipe, a folder.
-void check_place(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder))
-    throw Refusal{exit_failure, folder.string() + ": there is no such folder\n"};
-  if (fs::exists(file) && !fs::is_regular_file(file))
-    throw Refusal{exit_failure, file.string() + ": is not an ordinary file\n"};
-}
-
-/// All that can be wrong with the outputs is told before the work begins.
-std::vector<Output> checked_outputs(const RenderOptions& options, const ColorConfig& colors) {
-  std::vector<Output> outputs;
-  bool for_display = false;
-  for (const fs::path& file : options.outputs) {
-    const std::string extension = file.extension().string();
-    const auto format = image_format(extension.empty() ? "" : extension.substr(1));
-    if (!format)
-      throw Refusal{exit_bad_request, file.string() + ": must end in .exr, .png, .tiff or .jpeg\n"};
-    check_place(file);
-    ImageQuery query{*format, {}, {}, {}};
-    if (*format != ImageFormat::exr) {
-      for_display = true;
-      query.display = options.display;
-      query.view = options.view;
-    }
-    const auto form = image_form(query, colors.displays());
-    if (const auto* problem = std::get_if<api::Problem>(&form)) {
-      std::string message;
-      for (const api::Fault& fault : problem->faults)
-        message += "--" + fault.pointer.substr(1) + ": " + fault.detail + '\n';
-      throw Refusal{exit_bad_request, message};
-    }
-    outputs.push_back({file, std::get<ImageForm>(form)});
-  }
-  if ((options.display || options.view) && !for_display)
-    throw Refusal{exit_bad_request, "--display and --view are for PNG, TIFF and JPEG outputs\n"};
-  if (options.stats) check_place(*options.stats);
-  return outputs;
 }
 
 /// One line on a terminal that writes over itself; nothing where standard error is no terminal.
@@ -146,7 +93,14 @@ int render_or_throw(const RenderOptions& options, std::stop_token stop,
   if (const auto* problem = std::get_if<api::Problem>(&parsed)) throw refusal_of(*problem);
   const auto& request = std::get<api::RenderRequest>(parsed);
   const ColorConfig colors(catalog.display_config);
-  const std::vector<Output> outputs = checked_outputs(options, colors);
+  const std::vector<Output> outputs =
+      checked_outputs(options.outputs, options.display, options.view, colors);
+  if (options.stats) check_output_place(*options.stats);
+  if (options.explorable_out) {
+    if (!request.explorable)
+      throw Refusal{exit_bad_request, "--explorable-out: the request is not explorable\n"};
+    check_output_place(*options.explorable_out);
+  }
 
   const std::shared_ptr<const Scene> scene = build_scene(api::scene_spec(request, catalog));
   if (options.pixel) return explain(*scene, options, request);
@@ -161,10 +115,18 @@ int render_or_throw(const RenderOptions& options, std::stop_token stop,
     throw Refusal{exit_failure, "The renderer made " + std::to_string(result.stats.nan_samples) +
                                     " samples that are not finite: a bug, please report it.\n"};
   const std::string canonical = api::canonical_json(request);
-  for (const Output& output : outputs)
-    write_atomically(output.file, [&](const fs::path& temporary) {
-      write_form(temporary, develop(result.film), output.form, colors, canonical);
-    });
+  Image picture;
+  if (request.explorable) {
+    const ExplorableFilm film = explorable_film(*scene, result.film);
+    if (options.explorable_out)
+      write_atomically(*options.explorable_out, [&](const fs::path& temporary) {
+        write_explorable(temporary, film, canonical);
+      });
+    picture = develop_explorable(film, *scene, options.threads);
+  } else {
+    picture = develop(result.film);
+  }
+  write_outputs(outputs, picture, colors, canonical);
   if (options.stats)
     write_atomically(*options.stats, stats_document(result.stats, request, catalog));
   return 0;

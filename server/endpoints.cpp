@@ -161,7 +161,7 @@ HttpResponse readyz(Endpoints& endpoints, const HttpRequest&, const std::string&
 struct Route {
   std::string_view method, pattern;  ///< "{id}" stands for one segment
   HttpResponse (*handle)(Endpoints&, const HttpRequest&, const std::string& id);
-  std::array<std::string_view, 4> query{};  ///< the parameters it knows
+  std::array<std::string_view, 6> query{};  ///< the parameters it knows
 };
 
 constexpr std::array routes{
@@ -169,7 +169,10 @@ constexpr std::array routes{
     Route{"GET", "/v1/renders", list_renders, {"cursor", "limit", "status"}},
     Route{"GET", "/v1/renders/{id}", get_render},
     Route{"DELETE", "/v1/renders/{id}", delete_render},
-    Route{"GET", "/v1/renders/{id}/image", get_image, {"format", "display", "view", "colorspace"}},
+    Route{"GET",
+          "/v1/renders/{id}/image",
+          get_image,
+          {"format", "display", "view", "colorspace", "absorption", "absorber"}},
     Route{"POST", "/v1/renders/{id}/cancel", cancel_render},
     Route{"GET", "/v1/absorbers", get_absorbers},
     Route{"GET", "/v1/environments", get_environments},

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 
+#include "renderer/explorable.h"
 #include "server/ids.h"
 
 namespace translucube::server {
@@ -88,25 +89,65 @@ void write_form(const std::filesystem::path& file, Image image, const ImageForm&
   write_image(file, image, form.format, metadata);
 }
 
-std::variant<ImageFile, Problem> image_artifact(ArtifactStore& artifacts, const ColorConfig& colors,
-                                                const Job& job, const ImageQuery& query,
-                                                std::mutex& conversion) {
+std::string explorable_name(const std::string& image) { return "explorable-" + image; }
+
+namespace {
+
+/// Pictures of other absorbers that are kept for a render: whoever explores asks for many.
+constexpr std::ptrdiff_t most_redeveloped = 64;
+constexpr std::string_view redeveloped_prefix = "derived-redeveloped-";
+
+void make_room(ArtifactStore& artifacts, const std::string& id) {
+  const std::vector<std::string> names = artifacts.names(id);
+  const auto redeveloped = [](const std::string& name) {
+    return name.starts_with(redeveloped_prefix);
+  };
+  if (std::ranges::count_if(names, redeveloped) < most_redeveloped) return;
+  for (const std::string& name : names)
+    if (redeveloped(name)) artifacts.remove(id, name);
+}
+
+}  // namespace
+
+std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const Job& job,
+                                                const ImageQuery& query) {
+  auto& [catalog, colors, artifacts, busy] = darkroom;
   const auto checked = image_form(query, colors.displays());
   if (const auto* problem = std::get_if<Problem>(&checked)) return *problem;
   const auto& form = std::get<ImageForm>(checked);
+  std::optional<api::Redeveloped> redeveloped;
+  if (query.redevelopment.asked()) {
+    auto made = api::redevelop(job.request, query.redevelopment, catalog);
+    if (auto* problem = std::get_if<Problem>(&made)) return std::move(*problem);
+    redeveloped = std::get<api::Redeveloped>(std::move(made));
+  }
   const std::string original = job.image.value_or("");
-  const bool as_stored = form.format == ImageFormat::exr && form.colorspace == colorspaces[0];
-  const std::string artifact = as_stored ? original : derived_name(form);
+  const bool as_stored =
+      !redeveloped && form.format == ImageFormat::exr && form.colorspace == colorspaces[0];
+  std::string artifact = as_stored ? original : derived_name(form);
+  if (redeveloped)
+    artifact =
+        std::string(redeveloped_prefix) + content_hash(redeveloped->request) + '-' + artifact;
 
   auto file = artifacts.open(job.id, artifact);
   if (!file && !as_stored) {
-    const std::lock_guard lock(conversion);
+    const std::lock_guard lock(busy);
     file = artifacts.open(job.id, artifact);  // another request may have made it meanwhile
     if (!file) try {
-        Image image = read_image(artifacts.path(job.id, original));
+        Image image;
+        if (redeveloped) {
+          make_room(artifacts, job.id);
+          const StoredExplorable stored =
+              read_explorable(artifacts.path(job.id, explorable_name(original)));
+          image = develop_explorable(stored.film, redeveloped->absorption.absorber,
+                                     redeveloped->absorption.sigma_a_peak);
+        } else {
+          image = read_image(artifacts.path(job.id, original));
+        }
+        const std::string& request = redeveloped ? redeveloped->request : job.request;
         artifacts.write(job.id, artifact, [&](const std::filesystem::path& temporary) {
           try {
-            write_form(temporary, std::move(image), form, colors, job.request);
+            write_form(temporary, std::move(image), form, colors, request);
           } catch (const ImageError& error) {
             throw FileError(error.what());
           }

@@ -6,7 +6,9 @@
 #include <string>
 #include <variant>
 
+#include "api/catalog.h"
 #include "api/problem.h"
+#include "api/redevelop.h"
 #include "renderer/color.h"
 #include "renderer/image_io.h"
 #include "server/artifact_store.h"
@@ -19,6 +21,7 @@ namespace translucube::server {
 struct ImageQuery {
   ImageFormat format = ImageFormat::png;
   std::optional<std::string> display, view, colorspace;
+  api::Redevelopment redevelopment{};  ///< of an explorable render
 };
 
 /// An image query with every default filled in.
@@ -42,11 +45,20 @@ struct ImageFile {
   std::string etag;  ///< strong, with its quotes
 };
 
+/// The artifact that holds the path lengths of an explorable render, beside this image.
+std::string explorable_name(const std::string& image);
+
+/// What makes pictures of other pictures. One at a time: each takes much memory.
+struct Darkroom {
+  const api::Catalog& catalog;
+  const ColorConfig& colors;
+  ArtifactStore& artifacts;
+  std::mutex busy{};
+};
+
 /// The image of a succeeded job in the form asked for: made on the first demand, then kept beside
-/// the EXR. `conversion` is held while a picture is made. Throws FileError.
-std::variant<ImageFile, api::Problem> image_artifact(ArtifactStore& artifacts,
-                                                     const ColorConfig& colors, const Job& job,
-                                                     const ImageQuery& query,
-                                                     std::mutex& conversion);
+/// the EXR. Throws FileError.
+std::variant<ImageFile, api::Problem> image_artifact(Darkroom& darkroom, const Job& job,
+                                                     const ImageQuery& query);
 
 }  // namespace translucube::server

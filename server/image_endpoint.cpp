@@ -64,6 +64,15 @@ HttpResponse image_response(JobService& service, const HttpRequest& request,
     if (name == "display") query.display = value;
     if (name == "view") query.view = value;
     if (name == "colorspace") query.colorspace = value;
+    if (name == "absorber") query.redevelopment.absorber = value;
+    if (name == "absorption") {
+      const std::optional<double> number = api::absorption_number(value);
+      if (!number)
+        return problem_response({ProblemCode::invalid_request,
+                                 "A query parameter is not valid.",
+                                 {{"?absorption", "must be a number in [0, 1]"}}});
+      query.redevelopment.absorption = number;
+    }
   }
   if (!format_given) format = negotiate_image(request.header("accept"));
   if (!format) return problem_response({ProblemCode::not_acceptable, what_there_is, {}});

@@ -49,7 +49,11 @@ api::RenderStatus status_of(const Job& job) {
 
 JobService::JobService(const api::Catalog& catalog, const ColorConfig& colors, JobStore& store,
                        ArtifactStore& artifacts, Engine engine)
-    : catalog_(catalog), colors_(colors), store_(store), artifacts_(artifacts) {
+    : catalog_(catalog),
+      colors_(colors),
+      store_(store),
+      artifacts_(artifacts),
+      darkroom_{catalog, colors, artifacts} {
   clean_artifacts();
   workers_ = std::make_unique<WorkerPool>(
       Workshop{catalog, store, artifacts, std::move(engine), catalog.server.threads_per_worker},
@@ -211,7 +215,7 @@ Result<ImageFile> JobService::image(const std::string& id, const ImageQuery& que
       case api::JobState::succeeded:
         break;
     }
-    auto made = image_artifact(artifacts_, colors_, *job, query, conversion_mutex_);
+    auto made = image_artifact(darkroom_, *job, query);
     if (auto* problem = std::get_if<Problem>(&made)) {
       // Removed while it was read: then that is the answer.
       if (problem->code == ProblemCode::internal && !store_.find(id)) return no_such_render();

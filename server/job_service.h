@@ -89,7 +89,7 @@ class JobService {
   std::chrono::steady_clock::time_point probed_at_{};
   std::optional<std::string> probe_failure_;
 
-  std::mutex conversion_mutex_;  ///< one picture is converted at a time: each takes much memory
+  Darkroom darkroom_;
   std::unique_ptr<WorkerPool> workers_;
 };
 

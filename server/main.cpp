@@ -38,6 +38,8 @@ int main(int argc, char** argv) {
                              ->expected(1)
                              ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   render_verb->add_option("--stats", render.stats, "Writes samples, seconds, error, ... as JSON");
+  render_verb->add_option("--explorable-out", render.explorable_out,
+                          "Writes the path lengths of an explorable request, for develop");
   render_verb->add_option("--threads", render.threads, "At most this many threads; 0: all cores")
       ->check(CLI::Range(0, 4096));
   render_verb->add_option("--config", render.config, "Another service.json");
@@ -47,6 +49,23 @@ int main(int argc, char** argv) {
       "--pixel", pixel, "x,y: explains one sample of this pixel and renders nothing");
   render_verb->add_option("--sample", render.sample, "Which sample of the pixel")
       ->needs(pixel_option);
+
+  DevelopOptions develop;
+  CLI::App* develop_verb =
+      app.add_subcommand("develop", "Develops an explorable film for another absorber");
+  develop_verb->add_option("film", develop.film, "A file of render's --explorable-out")->required();
+  develop_verb->add_option("--absorption", develop.absorption, "The cube's absorption")
+      ->check(CLI::Range(0.0, 1.0));
+  develop_verb->add_option("--absorber", develop.absorber, "A name of config/absorbers");
+  develop_verb->add_option("-o,--output", develop.outputs, "A picture, as for render")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->required();
+  develop_verb->add_option("--threads", develop.threads, "At most this many threads; 0: all cores")
+      ->check(CLI::Range(0, 4096));
+  develop_verb->add_option("--config", develop.config, "Another service.json");
+  develop_verb->add_option("--display", develop.display, "For PNG, TIFF and JPEG");
+  develop_verb->add_option("--view", develop.view, "For PNG, TIFF and JPEG");
 
   AppearanceOptions appearance;
   CLI::App* appearance_verb = app.add_subcommand(
@@ -80,6 +99,7 @@ int main(int argc, char** argv) {
   }
   if (serve_verb->parsed()) return run_serve(serve);
   if (appearance_verb->parsed()) return run_appearance(appearance);
+  if (develop_verb->parsed()) return run_develop(develop);
   if (pixel_option->count() > 0) {
     render.pixel = pixel_of(pixel);
     if (!render.pixel) {

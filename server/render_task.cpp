@@ -11,7 +11,9 @@
 #include "api/parse.h"
 #include "api/render_status.h"
 #include "renderer/deadline.h"
+#include "renderer/explorable.h"
 #include "renderer/image_io.h"
+#include "server/image_artifacts.h"
 #include "server/task_watch.h"
 
 namespace translucube::server {
@@ -204,19 +206,36 @@ void TaskRunner::finish(const Task& task, double task_seconds, bool with_pass) {
   // The name belongs to this claim: a late double of it cannot touch a picture that is served.
   const std::string image = "image-" + std::to_string(task.pass.index) + '-' +
                             std::to_string(task.fencing_token) + ".exr";
-  workshop_.artifacts.write(task.job_id, image, [&](const std::filesystem::path& file) {
-    try {
-      write_image(file, develop(hand_.film), ImageFormat::exr, {hand_.canonical, "lin_rec709"});
-    } catch (const ImageError& error) {
-      throw FileError(error.what());
-    }
-  });
+  const auto write = [&](const std::string& name, const auto& writer) {
+    workshop_.artifacts.write(task.job_id, name, [&](const std::filesystem::path& file) {
+      try {
+        writer(file);
+      } catch (const ImageError& error) {
+        throw FileError(error.what());
+      }
+    });
+  };
+  const auto write_picture = [&](const Image& picture) {
+    write(image, [&](const std::filesystem::path& file) {
+      write_image(file, picture, ImageFormat::exr, {hand_.canonical, "lin_rec709"});
+    });
+  };
+  if (hand_.film.shares) {
+    const ExplorableFilm film = explorable_film(*hand_.scene, hand_.film);
+    write(explorable_name(image), [&](const std::filesystem::path& file) {
+      write_explorable(file, film, hand_.canonical);
+    });
+    write_picture(develop_explorable(film, *hand_.scene, workshop_.threads));
+  } else {
+    write_picture(develop(hand_.film));
+  }
   const RenderStats stats = workshop_.engine.stats(*hand_.scene, hand_.film, seconds, threads());
   const TaskResult result{task_seconds, progress_of(hand_.film, hand_.quality, seconds)};
   if (workshop_.store.finish(task, result, with_pass, api::stats_json(stats), image)) {
     workshop_.artifacts.remove_films(task.job_id);
   } else {
     workshop_.artifacts.remove(task.job_id, image);
+    workshop_.artifacts.remove(task.job_id, explorable_name(image));
     tidy(task.job_id);
   }
   forget();

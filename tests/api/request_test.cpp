@@ -111,8 +111,6 @@ TEST(Request, SeedsAreExactInEveryJsonReader) {
 }
 
 TEST(Request, PartsThatAreNotServedYetAreReadFirst) {
-  EXPECT_THAT(fault_at("/explorable", request_with(R"("explorable":true)")),
-              HasSubstr("not served"));
   EXPECT_EQ(fault_at("/model", request_with(R"("model":"path")")), "must be transport or dipole");
   accepted(request_with(R"("model":"transport","explorable":false)"));
 }
@@ -149,6 +147,15 @@ TEST(Request, TheDipoleModelWeighsByTheScatteringCoordinate) {
               3.0 / (1 + 3.0), 1e-12);
   const SceneSpec exact = scene_spec(accepted(request_with(R"("seed":1)")), shipped_catalog());
   EXPECT_TRUE(std::holds_alternative<ExactTransport>(exact.model));
+}
+
+TEST(Request, ExplorableRendersAreServedWithinTheirShareOfThePixels) {
+  EXPECT_TRUE(accepted(request_with(R"("explorable":true)")).explorable);
+  const auto image = [](const std::string& width) {
+    return request_with(R"("explorable":true,"image":{"height":1024,"width":)" + width + "}");
+  };
+  accepted(image("1024"));
+  EXPECT_THAT(fault_at("/image", image("1025")), HasSubstr("explorable"));
 }
 
 }  // namespace

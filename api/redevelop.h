@@ -1,0 +1,37 @@
+#pragma once
+
+// Another absorber for a render that is done: what an explorable film is developed for.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "api/catalog.h"
+#include "api/problem.h"
+#include "renderer/scene.h"
+
+namespace translucube::api {
+
+/// What is left out stays as the render's request has it.
+struct Redevelopment {
+  std::optional<double> absorption{};     ///< the cube's, [0, 1]
+  std::optional<std::string> absorber{};  ///< a name of the catalog
+
+  bool asked() const { return absorption || absorber; }
+};
+
+/// The whole text as a number in [0, 1], or nothing.
+std::optional<double> absorption_number(std::string_view text);
+
+struct Redeveloped {
+  Absorption absorption;
+  std::string request;  ///< canonical: rendered anew, it would give the same picture
+};
+
+/// Faults have the pointers "?absorption" and "?absorber". Only the material of the request is read
+/// again: its environment may have gone since.
+std::variant<Redeveloped, Problem> redevelop(std::string_view canonical_request,
+                                             const Redevelopment& asked, const Catalog& catalog);
+
+}  // namespace translucube::api

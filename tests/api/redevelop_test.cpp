@@ -1,0 +1,116 @@
+#include "api/redevelop.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "api/parse.h"
+#include "tests/api/fixture.h"
+
+namespace translucube::api {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+
+const Catalog& catalog() {
+  static const Catalog shipped = load_catalog(TRANSLUCUBE_SOURCE_DIR "/config/service.json");
+  return shipped;
+}
+
+std::string canonical(const std::string& material, bool explorable = true) {
+  const auto parsed = parse_render_request(
+      R"({"material":)" + material + R"(,"explorable":)" + (explorable ? "true" : "false") + "}",
+      catalog());
+  if (const auto* problem = std::get_if<Problem>(&parsed)) ADD_FAILURE() << to_text(*problem);
+  return canonical_json(std::get<RenderRequest>(parsed));
+}
+
+const std::string cube =
+    R"({"cube":{"absorption":0.3,"roughness":0.3,"scattering":0.5},"reference_thickness_mm":5})";
+
+Redeveloped redeveloped(const std::string& material, const Redevelopment& asked) {
+  auto result = redevelop(canonical(material), asked, catalog());
+  if (const auto* problem = std::get_if<Problem>(&result)) {
+    ADD_FAILURE() << to_text(*problem);
+    return {};
+  }
+  return std::get<Redeveloped>(result);
+}
+
+std::vector<std::string> fault_pointers(const std::variant<Redeveloped, Problem>& result) {
+  std::vector<std::string> pointers;
+  for (const Fault& fault : std::get<Problem>(result).faults) pointers.push_back(fault.pointer);
+  return pointers;
+}
+
+TEST(Redevelop, TakesAbsorptionOfTheReferenceThickness) {
+  const Redeveloped half = redeveloped(cube, {0.5, {}});
+  EXPECT_DOUBLE_EQ(half.absorption.sigma_a_peak, std::log(2.0) / 5);
+  EXPECT_EQ(json::parse(half.request)["material"]["cube"]["absorption"], 0.5);
+  EXPECT_TRUE(std::isinf(redeveloped(cube, {1.0, {}}).absorption.sigma_a_peak));
+}
+
+TEST(Redevelop, KeepsWhatIsNotAsked) {
+  const Redeveloped named = redeveloped(cube, {{}, "amber"});
+  EXPECT_DOUBLE_EQ(named.absorption.sigma_a_peak, -std::log(0.7) / 5);
+  const auto request = std::get<RenderRequest>(parse_render_request(named.request, catalog()));
+  EXPECT_EQ(canonical_json(request), named.request) << "it is canonical";
+  EXPECT_EQ(std::get<std::string>(request.material.absorber), "amber");
+  EXPECT_EQ(std::get<CubePoint>(request.material.point).roughness, 0.3);
+}
+
+TEST(Redevelop, GivesTheMaterialThatItsRequestDescribes) {
+  for (const std::string& material :
+       {cube, std::string(R"({"coefficients":{"sigma_a":[0.1,0.4,0.2],"alpha":0.1,"sigma_s":2}})"),
+        std::string(R"({"coefficients":{"sigma_a_peak":0.3,"alpha":0,"sigma_s":2}})")})
+    for (const Redevelopment& asked :
+         {Redevelopment{0.8, {}}, Redevelopment{{}, "amber"}, Redevelopment{0.2, "amber"},
+          Redevelopment{1.0, "amber"}, Redevelopment{0.0, {}}}) {
+      const Redeveloped made = redeveloped(material, asked);
+      const auto request = std::get<RenderRequest>(parse_render_request(made.request, catalog()));
+      const Material described = scene_spec(request, catalog()).material;
+      EXPECT_EQ(described.coefficients.sigma_a_peak, made.absorption.sigma_a_peak) << made.request;
+      EXPECT_EQ(described.absorber, made.absorption.absorber) << made.request;
+      EXPECT_NEAR(described.coefficients.sigma_s,
+                  std::get<RenderRequest>(parse_render_request(canonical(material), catalog()))
+                              .material.point.index() == 0
+                      ? described.coefficients.sigma_s
+                      : 2,
+                  1e-12);
+    }
+}
+
+TEST(Redevelop, KeepsTheColourOfCoefficientsOfEachChannel) {
+  const Redeveloped made = redeveloped(
+      R"({"coefficients":{"sigma_a":[0.1,0.4,0.2],"alpha":0.1,"sigma_s":2}})", {0.5, {}});
+  const auto& rgb = std::get<RgbAbsorber>(made.absorption.absorber).relative;
+  EXPECT_THAT(rgb, ElementsAre(0.25, 1, 0.5));
+}
+
+TEST(Redevelop, RefusesWhatItDoesNotKnow) {
+  const std::string request = canonical(cube);
+  EXPECT_THAT(fault_pointers(redevelop(request, {1.5, "nothing"}, catalog())),
+              ElementsAre("?absorber", "?absorption"));
+  EXPECT_THAT(fault_pointers(redevelop(request, {std::nan(""), {}}, catalog())),
+              ElementsAre("?absorption"));
+}
+
+TEST(Redevelop, RefusesARenderWithoutPathLengthsNamingTheParameters) {
+  const auto result = redevelop(canonical(cube, false), {0.5, "amber"}, catalog());
+  EXPECT_EQ(std::get<Problem>(result).code, ProblemCode::conflict);
+  EXPECT_THAT(fault_pointers(result), ElementsAre("?absorption", "?absorber"));
+}
+
+TEST(Redevelop, ReadsAbsorptionAsAWholeNumberText) {
+  EXPECT_EQ(absorption_number("0.25"), 0.25);
+  EXPECT_EQ(absorption_number("1"), 1.0);
+  EXPECT_FALSE(std::signbit(*absorption_number("-0")));
+  for (const char* text :
+       {"", " 0.5", "0.5 ", "nan", "inf", "-0.1", "1.0001", "0,5", "+0.5", "1e9"})
+    EXPECT_EQ(absorption_number(text), std::nullopt) << text;
+}
+
+}  // namespace
+}  // namespace translucube::api
