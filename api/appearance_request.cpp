@@ -92,7 +92,8 @@ std::variant<AppearanceRequest, Problem> parse_appearance_request(std::string_vi
 }
 
 SlabAppearance measure(const AppearanceRequest& request, const Catalog& catalog, int threads) {
-  const Material material = scene_spec(render_request(request, catalog), catalog).material;
+  Material material = scene_spec(render_request(request, catalog), catalog).material;
+  material.multiple_scattering = true;  // a plate that loses light is of no use
   return slab_appearance(material, request.thickness_mm, request.standard_error, request.seed,
                          threads);
 }

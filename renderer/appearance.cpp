@@ -99,8 +99,7 @@ SlabAppearance slab_appearance(const Material& given, double thickness_mm, doubl
   const auto start = std::chrono::steady_clock::now();
   const SlabChannels channels = slab_channels(material, thickness_mm);
   const auto [least, peak] = std::minmax_element(channels.sigma_a.begin(), channels.sigma_a.end());
-  const SlabBody body{make_interface(material, true), slab_interior(material, thickness_mm),
-                      *least};
+  const SlabBody body{make_interface(material), slab_interior(material, thickness_mm), *least};
   const bool walks = needs_walks(body);
 
   SlabDeveloper developer(channels, *peak);

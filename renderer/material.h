@@ -45,6 +45,8 @@ struct Material {
   /// Pigments: the scatterers are the absorbers, sigma_a(lambda) = sigma_s x this x k(lambda), and
   /// coefficients.sigma_a_peak says the same. As sigma_s grows without bound the albedo stays.
   std::optional<double> absorption_per_scattering;
+  /// Between microfacets (Heitz et al. 2016); without it a rough interface loses light.
+  bool multiple_scattering = true;
 };
 
 }  // namespace translucube

@@ -50,10 +50,11 @@ double least_absorption(const SceneSpec& spec) {
 
 }  // namespace
 
-Interface make_interface(const Material& material, bool multiple_scattering) {
+Interface make_interface(const Material& material) {
   // Without a step of the index there is no interface, however rough.
   if (material.coefficients.alpha == 0 || material.ior == 1) return SmoothInterface{material.ior};
-  return RoughInterface{material.ior, Ggx{material.coefficients.alpha}, multiple_scattering};
+  return RoughInterface{material.ior, Ggx{material.coefficients.alpha},
+                        material.multiple_scattering};
 }
 
 Interior make_interior(const Material& material, double unit_mm) {

@@ -59,13 +59,8 @@ struct Scene {
   }
 };
 
-/// Renders keep to the first collision with the microfacets (Walter 2007), as the peers that they
-/// are compared with do, until all the truths of multiple scattering are in; slab optics have it.
-inline constexpr bool renders_scatter_between_microfacets = false;
-
 /// The optics of a material for a body with this unit.
-Interface make_interface(const Material& material,
-                         bool multiple_scattering = renders_scatter_between_microfacets);
+Interface make_interface(const Material& material);
 Interior make_interior(const Material& material, double unit_mm);
 /// The material's lane in the lengths that the interior's paths bring.
 Lane make_lane(const Material& material, const Interior& interior, double unit_mm);

@@ -35,6 +35,7 @@ SceneSpec peer_scene(const PeerMaterial& m, int size, std::uint64_t seed) {
   SceneSpec spec;
   spec.material.coefficients = {m.sigma_a, m.alpha, m.sigma_s};
   spec.material.absorber = RgbAbsorber{{0.15, 1, 1}};
+  spec.material.multiple_scattering = false;  // as the peers
   spec.object = SphereObject{1};
   spec.environment.source =
       ImageEnvironmentSpec{TRANSLUCUBE_SOURCE_DIR "/config/environments/forest.exr"};
