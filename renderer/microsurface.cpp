@@ -109,7 +109,8 @@ DirectionalAlbedo directional_albedo(const RoughInterface& interface, double eta
         interface, eta, wo, sampler, [](const MicroVertex&) {},
         [&](Vec3 wi, double weight, double) {
           (wi.z > 0 ? albedo.reflected : albedo.transmitted) += weight;
-        });
+        },
+        1e-4);  // a table's noise would stay in every picture made with it
   }
   return {albedo.reflected / n, albedo.transmitted / n};
 }

@@ -84,9 +84,9 @@ void cross_microsurface(const RoughInterface& interface, double eta, Vec3 wo, Pa
     }
     if (!interface.multiple_scattering) return;
     vertex.advance(sample, rng.uniform_positive(), rng.uniform_positive());
-    if (vertex.weight() >= roulette_of_microfacets) continue;
-    if (rng.uniform() * roulette_of_microfacets >= vertex.weight()) return;
-    vertex.set_weight(roulette_of_microfacets);
+    if (vertex.weight() >= roulette) continue;
+    if (rng.uniform() * roulette >= vertex.weight()) return;
+    vertex.set_weight(roulette);
   }
 }
 
