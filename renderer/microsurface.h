@@ -72,7 +72,8 @@ inline constexpr double roulette_of_microfacets = 1.0 / 2;
 /// surface on either side, wi in the frame of the first side. The expected sum of all weights is 1.
 template <class Connect, class Escape>
 void cross_microsurface(const RoughInterface& interface, double eta, Vec3 wo, PathSampler& sampler,
-                        Connect&& connect, Escape&& escape) {
+                        Connect&& connect, Escape&& escape,
+                        double roulette = roulette_of_microfacets) {
   Rng& rng = sampler.rng();
   MicroVertex vertex(interface.microfacets, eta, wo, rng.uniform_positive());
   while (true) {
