@@ -92,8 +92,7 @@ std::variant<AppearanceRequest, Problem> parse_appearance_request(std::string_vi
 }
 
 SlabAppearance measure(const AppearanceRequest& request, const Catalog& catalog, int threads) {
-  Material material = scene_spec(render_request(request, catalog), catalog).material;
-  material.multiple_scattering = true;  // a plate that loses light is of no use
+  const Material material = scene_spec(render_request(request, catalog), catalog).material;
   return slab_appearance(material, request.thickness_mm, request.standard_error, request.seed,
                          threads);
 }

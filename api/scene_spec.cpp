@@ -88,9 +88,6 @@ Rgb radiance(const std::array<double, 3>& v) {
 SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
   SceneSpec spec;
   spec.material = material_of(request.material, catalog);
-  // Renders keep to the first microfacet (Walter 2007), as the renderers that they are compared
-  // with do, until all truths of multiple scattering are in; slab optics have it.
-  spec.material.multiple_scattering = false;
   spec.model = light_model(request, spec.material);
   spec.object = std::visit(
       Overloaded{[](const SphereObject& sphere) -> ObjectSpec { return sphere; },

@@ -3,6 +3,7 @@
 // largest pixels, times CPU seconds. Prints a table, and JSON where --json FILE asks for it.
 //
 //   peers [--samples N] [--size N] [--threads N] [--json FILE] [--only A0,S1] [--seed N]
+//         [--microfacets multiple|single]   (the peers scatter once only)
 
 #include <algorithm>
 #include <cstdio>
@@ -31,11 +32,11 @@ constexpr PeerMaterial materials[] = {
     {"S01", 0, .1, 0, .36},  {"S1", 0, 1, 0, 2.1},    {"S10", 0, 10, 0, 11.5},
     {"S100", 0, 100, 0, 44}, {"M", .1, 5, .2, 3.6},   {"C", 0, 10, 1, 9.5}};
 
-SceneSpec peer_scene(const PeerMaterial& m, int size, std::uint64_t seed) {
+SceneSpec peer_scene(const PeerMaterial& m, bool multiple, int size, std::uint64_t seed) {
   SceneSpec spec;
   spec.material.coefficients = {m.sigma_a, m.alpha, m.sigma_s};
   spec.material.absorber = RgbAbsorber{{0.15, 1, 1}};
-  spec.material.multiple_scattering = false;  // as the peers
+  spec.material.multiple_scattering = multiple;
   spec.object = SphereObject{1};
   spec.environment.source =
       ImageEnvironmentSpec{TRANSLUCUBE_SOURCE_DIR "/config/environments/forest.exr"};
@@ -90,6 +91,7 @@ int main(int argc, char** argv) {
   std::uint32_t samples = 64;
   int size = 256, threads = 0;
   std::uint64_t seed = 1;
+  bool multiple = true;
   std::string json_file, only;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string option = argv[i], value = argv[i + 1];
@@ -105,6 +107,8 @@ int main(int argc, char** argv) {
       only = "," + value + ",";
     else if (option == "--seed")
       seed = std::stoull(value);
+    else if (option == "--microfacets" && (value == "multiple" || value == "single"))
+      multiple = value == "multiple";
     else
       return std::fprintf(stderr, "peers: unknown option %s\n", option.c_str()), 2;
   }
@@ -114,9 +118,9 @@ int main(int argc, char** argv) {
   for (const PeerMaterial& m : materials) {
     if (!only.empty() && only.find("," + std::string(m.name) + ",") == std::string::npos) continue;
     const SampleTarget target{samples};
-    const RenderResult first = render(*build_scene(peer_scene(m, size, seed)), target, threads);
+    const RenderResult first = render(*build_scene(peer_scene(m, multiple, size, seed)), target, threads);
     const RenderResult second =
-        render(*build_scene(peer_scene(m, size, seed + 1)), target, threads);
+        render(*build_scene(peer_scene(m, multiple, size, seed + 1)), target, threads);
     const Image a = develop(first.film), b = develop(second.film);
     const RelMse error = rel_mse(a, b, m.alpha == 0 && m.sigma_s == 0);
     const double cpu = (first.stats.cpu_seconds + second.stats.cpu_seconds) / 2;

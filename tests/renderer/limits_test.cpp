@@ -21,8 +21,6 @@ Estimate look(const Look& l, std::uint32_t samples = 512) {
   m.coefficients.sigma_a_peak = l.absorption;
   m.absorber = RgbAbsorber{{1, 1, 1}};
   Scene scene = body(Sphere{}, m);
-  if (auto* rough = std::get_if<RoughInterface>(&scene.interface))
-    rough->multiple_scattering = true;
   scene.environment = half_space_light(true);
   scene.lanes = {make_lane(m, scene.interior, 1.0)};
   look_from_afar(scene, 1.05, 32);
