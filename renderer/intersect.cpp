@@ -8,8 +8,10 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
+#include "renderer/distance_grid.h"
 #include "renderer/mesh.h"
 #include "renderer/shapes.h"
 
@@ -39,8 +41,10 @@ struct MeshGeometry {
     Vec3 origin, normal;
   };
   std::vector<Face> faces;
+  std::vector<std::array<Vec3, 2>> corners;  ///< of each face, beside its origin
   Device device;
   EmbreeScene scene;
+  DistanceGrid coarse{32}, fine{128};
 };
 
 namespace {
@@ -93,6 +97,60 @@ bool first_hit(const MeshGeometry& geometry, Vec3 p, Vec3 d, double t_max, Side 
   return true;
 }
 
+double distance_squared_to_edge(Vec3 p, Vec3 a, Vec3 b) {
+  const Vec3 ab = b - a, ap = p - a;
+  const double along = dot(ap, ab), whole = length_squared(ab);
+  const double t = along <= 0 ? 0 : along >= whole ? 1 : along / whole;
+  return length_squared(ap - t * ab);
+}
+
+double distance_squared_to_face(const MeshGeometry& geometry, Vec3 p, unsigned face) {
+  const MeshGeometry::Face& f = geometry.faces[face];
+  const Vec3 a = f.origin, b = geometry.corners[face][0], c = geometry.corners[face][1];
+  const auto above = [&](Vec3 from, Vec3 to) {
+    return dot(cross(to - from, p - from), f.normal) > 0;
+  };
+  if (above(a, b) && above(b, c) && above(c, a)) {
+    const double height = dot(p - a, f.normal);
+    return height * height;
+  }
+  return std::min({distance_squared_to_edge(p, a, b), distance_squared_to_edge(p, b, c),
+                   distance_squared_to_edge(p, c, a)});
+}
+
+struct NearestQuery {
+  const MeshGeometry* geometry;
+  Vec3 p;
+  double keen;      ///< how much of the distance found so far is still searched
+  double distance;  ///< of the nearest face so far
+};
+
+/// In units of the body: more than single precision moves a point of the unit ball or the boxes of
+/// Embree's tree, so that no face nearer than the radius is passed over.
+constexpr double point_margin = 2e-6;
+
+bool consider_face(RTCPointQueryFunctionArguments* args) {
+  auto& q = *static_cast<NearestQuery*>(args->userPtr);
+  const double d2 = distance_squared_to_face(*q.geometry, q.p, args->primID);
+  if (d2 >= q.distance * q.distance) return false;
+  q.distance = std::sqrt(d2);
+  args->query->radius = static_cast<float>(q.keen * q.distance + point_margin);
+  return true;
+}
+
+/// The distance of p to the nearest face, known to be at most `most`, to a factor of 1 / keen: on a
+/// round body thousands of faces are as good as equally near, and to tell which is nearest takes
+/// fifty times as long as to tell how near they are.
+DistanceBounds nearest_face(const MeshGeometry& geometry, Vec3 p, double most, double keen) {
+  NearestQuery q{&geometry, p, keen, most};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  RTCPointQuery query{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0,
+                      static_cast<float>(most + point_margin)};
+  rtcPointQuery(geometry.scene.get(), &query, &context, consider_face, &q);
+  return {keen * q.distance, q.distance};
+}
+
 }  // namespace
 
 bool Mesh::enter(Vec3 p, Vec3 d, Hit& hit) const {
@@ -123,9 +181,22 @@ bool Mesh::inside(Vec3 p) const {
          dot(hit.n, d) > 0;
 }
 
-double Mesh::clearance(Vec3) const {
-  // Any bound is a valid one; a query for the nearest face costs more than the flights it saves.
-  return 0;
+DistanceBounds Mesh::distance_bounds(Vec3 p) const {
+  constexpr double keen = 0.9, unit_ball = 4;
+  return geometry_->coarse.at(
+      p, keen, [&](Vec3 q) { return nearest_face(*geometry_, q, unit_ball, keen).most; });
+}
+
+DistanceBounds Mesh::finer_distance_bounds(Vec3 p) const {
+  constexpr double keen = 0.9;
+  return geometry_->fine.at(p, keen, [&](Vec3 q) {
+    return nearest_face(*geometry_, q, distance_bounds(q).most, keen).most;
+  });
+}
+
+DistanceBounds Mesh::distance(Vec3 p, double most) const {
+  constexpr double keen = 0.6;  // by CPU time (tests/bench/meshes.cpp)
+  return nearest_face(*geometry_, p, most, keen);
 }
 
 BuiltMesh build_mesh(const TriangleMesh& mesh) {
@@ -167,6 +238,7 @@ BuiltMesh build_mesh(const TriangleMesh& mesh) {
     const Vec3 a = rounded[t[0]], n = cross(rounded[t[1]] - a, rounded[t[2]] - a);
     const double size = length(n);
     geometry->faces.push_back({a, size > 0 ? n * (1 / size) : Vec3{}});
+    geometry->corners.push_back({rounded[t[1]], rounded[t[2]]});
   }
   rtcCommitGeometry(triangles);
   rtcAttachGeometry(geometry->scene.get(), triangles);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "renderer/distance_grid.h"
 #include "renderer/vec.h"
 
 namespace translucube {
@@ -21,7 +22,8 @@ struct Hit {
 ///   enter(p, d, hit)          first hit of a ray outside, towards the surface's front
 ///   exit(p, d, t_max, hit)    the hit of a ray inside if it is nearer than t_max
 ///   inside(p)                 whether a point lies in the body
-///   clearance(p)              a lower bound of the distance of a point inside to the surface
+///   clearance(p)              a lower bound of the distance of a point inside to the surface;
+///                             for a mesh, the walk's clearing.h keeps it
 /// and `convex`: whether a ray that leaves can never come back.
 
 ///
@@ -127,7 +129,13 @@ class Mesh {
   explicit Mesh(std::shared_ptr<const MeshGeometry> geometry) : geometry_(std::move(geometry)) {}
 
   bool inside(Vec3 p) const;
-  double clearance(Vec3 p) const;
+  double clearance(Vec3 p) const { return distance_bounds(p).least; }
+  /// Bounds of the distance to the surface, at the cost of a look at a table; a finer one takes its
+  /// samples more often.
+  DistanceBounds distance_bounds(Vec3 p) const;
+  DistanceBounds finer_distance_bounds(Vec3 p) const;
+  /// Closer bounds, where the distance is known to be at most `most`, at the cost of some rays.
+  DistanceBounds distance(Vec3 p, double most) const;
   bool enter(Vec3 p, Vec3 d, Hit& hit) const;
   bool exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const;
 

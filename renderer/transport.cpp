@@ -163,8 +163,9 @@ class Tracer {
   }
 
   template <class Place>
-  bool walk_to_boundary(const Place& place, const Medium& medium, Particle& particle, Rng& rng,
+  bool walk_to_boundary(const Place& body, const Medium& medium, Particle& particle, Rng& rng,
                         Hit& hit) {
+    auto&& place = surroundings(body, medium);
     ++tile_.counters.flights;
     while (fly(place, medium, particle, rng, hit)) {
       ++tile_.counters.flights;

@@ -3,6 +3,7 @@
 // The random walk in a homogeneous body, collision by collision.
 
 #include "renderer/ball_tables.h"
+#include "renderer/clearing.h"
 #include "renderer/medium.h"
 #include "renderer/shapes.h"
 
@@ -17,7 +18,7 @@ struct Particle {
 /// One free flight. True at the next collision; false where the boundary comes first: then `hit` is
 /// on it and the particle still at its start.
 template <class Shape>
-bool fly(const Shape& shape, const Medium& medium, Particle& particle, Rng& rng, Hit& hit) {
+bool fly(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng, Hit& hit) {
   const double flight = medium.sample_flight(rng);
   if (shape.exit(particle.p, particle.d, flight, hit)) return false;
   particle.p = particle.p + flight * particle.d;
@@ -28,7 +29,7 @@ bool fly(const Shape& shape, const Medium& medium, Particle& particle, Rng& rng,
 /// A collision: a new direction; deep inside an isotropic medium after one large step to the
 /// surface of the largest ball that fits.
 template <class Shape>
-void scatter(const Shape& shape, const Medium& medium, Particle& particle, Rng& rng) {
+void scatter(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng) {
   if (medium.g == 0) {
     const int level = ball_level(shape.clearance(particle.p) * medium.sigma_s);
     if (level >= 0) {

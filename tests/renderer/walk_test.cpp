@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "renderer/lambertian.h"
+#include "tests/support/walks.h"
 
 namespace translucube::test {
 namespace {
@@ -24,24 +24,6 @@ Exit analog_exit(double sigma_s, Rng& rng) {
   Hit hit;
   while (fly(Sphere{}, Medium{sigma_s, 0}, particle, rng, hit)) particle.d = sample_isotropic(rng);
   return {dot(hit.n, particle.d), (particle.length + hit.t) * sigma_s};
-}
-
-/// Largest distance between two empirical distributions (Kolmogorov, Smirnov), over its 0.1 %
-/// level.
-double ks_ratio(std::vector<double> a, std::vector<double> b) {
-  // Light that crosses unscattered all has the same values, up to rounding.
-  for (auto* values : {&a, &b})
-    for (double& v : *values) v = std::round(v * 1e6);
-  std::ranges::sort(a);
-  std::ranges::sort(b);
-  double largest = 0;
-  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
-    const double x = std::min(a[i], b[j]);
-    while (i < a.size() && a[i] <= x) ++i;
-    while (j < b.size() && b[j] <= x) ++j;
-    largest = std::max(largest, std::fabs(double(i) / a.size() - double(j) / b.size()));
-  }
-  return largest / (1.95 * std::sqrt(1.0 / a.size() + 1.0 / b.size()));
 }
 
 TEST(LargeSteps, LeaveABallAsTheAnalogWalkDoes) {
@@ -105,75 +87,30 @@ TEST(LargeSteps, FitIntoTheBody) {
   EXPECT_EQ(ball_level(std::nan("")), -1);
 }
 
-/// Mean length inside a unit sphere of index 1 for diffuse light: 4/3 (Blanco and Fournier 2003).
-/// Nearly all light turns back near the surface and nearly all length is travelled deep inside, so
-/// particles are split as they go down and played out as they come up (weight window).
-struct MeanLength {
-  double mean, standard_error, collisions;
-};
 MeanLength mean_length(const Medium& medium, int walks, std::uint64_t key) {
-  double sum = 0, squares = 0, collisions = 0;
-  struct Weighted : Particle {
-    double weight = 1;
-  };
-  for (int i = 0; i < walks; ++i) {
-    Rng rng(hash_combine(key, i));
-    const Vec3 down = InterfacedLambertian::sample(rng.uniform2());
-    std::vector<Weighted> stack{{{{0, 0, 1}, -down, 0}, 1}};
-    double total = 0;
-    while (!stack.empty()) {
-      Weighted particle = stack.back();
-      stack.pop_back();
-      while (true) {
-        Hit hit;
-        const double before = particle.length;
-        if (!fly(Sphere{}, medium, particle, rng, hit)) {
-          total += particle.weight * hit.t;
-          break;
-        }
-        scatter(Sphere{}, medium, particle, rng);
-        ++collisions;
-        total += particle.weight * (particle.length - before);
-        const double depth =
-            0.5 * (1 - length_squared(particle.p)) * medium.sigma_s * (1 - medium.g);
-        const double wanted = std::min(1.0, 1 / depth);
-        if (particle.weight > 2 * wanted) {
-          particle.weight /= 2;
-          stack.push_back(particle);
-        } else if (particle.weight < wanted / 2) {
-          if (rng.uniform() < 0.5) break;
-          particle.weight *= 2;
-        }
-      }
-    }
-    sum += total;
-    squares += total * total;
-  }
-  const double mean = sum / walks;
-  return {mean, std::sqrt((squares / walks - mean * mean) / walks), collisions / walks};
+  return mean_length(Sphere{}, 4.0 / 3, enter_sphere, medium, 1, walks, key);
 }
 
 TEST(MeanPathLength, StaysExactUpToAMillionMeanFreePaths) {
   for (const double sigma_s : {1.0, 1e2, 1e4, 1e6}) {
     const MeanLength m = mean_length({sigma_s, 0}, 300'000, 3);
-    const double error = m.standard_error / (4.0 / 3);
-    EXPECT_NEAR(m.mean / (4.0 / 3), 1, 3.5 * error) << sigma_s;
-    EXPECT_LT(error, 1e-2) << sigma_s << ", collisions " << m.collisions;
+    EXPECT_NEAR(m.mean, 1, 3.5 * m.standard_error) << sigma_s;
+    EXPECT_LT(m.standard_error, 1e-2) << sigma_s << ", collisions " << m.collisions;
   }
 }
 
 TEST(LongMeanPathLength, StaysExactToHalfAPercentUpToAMillionMeanFreePaths) {
   for (const double sigma_s : {1e4, 1e6}) {
     const MeanLength m = mean_length({sigma_s, 0}, 8'000'000, 9);
-    EXPECT_NEAR(m.mean / (4.0 / 3), 1, 5e-3) << sigma_s;
-    EXPECT_LT(m.standard_error / (4.0 / 3), 1.8e-3) << sigma_s;
+    EXPECT_NEAR(m.mean, 1, 5e-3) << sigma_s;
+    EXPECT_LT(m.standard_error, 1.8e-3) << sigma_s;
   }
 }
 
 TEST(MeanPathLength, OfTheAnalogWalkInAForwardScatteringMediumIsTheSame) {
   const MeanLength m = mean_length({200, 0.9}, 60'000, 4);
-  EXPECT_NEAR(m.mean / (4.0 / 3), 1, 4 * m.standard_error / (4.0 / 3));
-  EXPECT_LT(m.standard_error / (4.0 / 3), 1e-2);
+  EXPECT_NEAR(m.mean, 1, 4 * m.standard_error);
+  EXPECT_LT(m.standard_error, 1e-2);
 }
 
 TEST(Walk, CostsALogarithmOfTheDensity) {

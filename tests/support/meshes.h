@@ -2,6 +2,7 @@
 
 // Closed meshes to test with, made rather than stored.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
