@@ -19,7 +19,7 @@ using namespace translucube;
 using namespace translucube::test;
 
 struct Cost {
-  double ns, mean, standard_error, flights;
+  double ns, mean, standard_error, flights, truncated;
 };
 Cost cost(const Shape& shape, double sigma_s, std::uint32_t samples) {
   Scene scene = body(shape, material(1.5, 0, sigma_s));
@@ -29,7 +29,7 @@ Cost cost(const Shape& shape, double sigma_s, std::uint32_t samples) {
   const Estimate e = image_mean(film);
   const auto n = static_cast<double>(film.counters.camera_samples);
   return {film.cpu_seconds / n * 1e9, e.mean, e.standard_error,
-          static_cast<double>(film.counters.flights) / n};
+          static_cast<double>(film.counters.flights) / n, film.counters.truncated_energy / n};
 }
 
 }  // namespace
@@ -60,8 +60,8 @@ int main(int argc, char** argv) {
   add("box", [] { return box({1, 1.5, 2}); });
   add("icosphere", [] { return icosphere(6); });  // 81,920 triangles
   add("knot", [] { return knot(1000, 50); });     // 100,000 triangles
-  std::printf("%-10s %8s %10s %8s %9s %8s %9s\n", "body", "sigma R", "ns/sample", "/sphere",
-              "flights", "mean", "+-");
+  std::printf("%-10s %8s %10s %8s %9s %8s %9s %9s\n", "body", "sigma R", "ns/sample", "/sphere",
+              "flights", "mean", "+-", "truncated");
   std::istringstream list(sigmas);
   for (std::string item; std::getline(list, item, ',');) {
     const double sigma_s = std::stod(item);
@@ -69,8 +69,8 @@ int main(int argc, char** argv) {
     for (const Body& b : bodies) {
       const Cost c = cost(b.shape, sigma_s, samples);
       if (sphere == 0) sphere = c.ns;
-      std::printf("%-10s %8g %10.0f %8.2f %9.1f %8.5f %9.5f\n", b.name, sigma_s, c.ns,
-                  c.ns / sphere, c.flights, c.mean, c.standard_error);
+      std::printf("%-10s %8g %10.0f %8.2f %9.1f %8.5f %9.5f %9.1e\n", b.name, sigma_s, c.ns,
+                  c.ns / sphere, c.flights, c.mean, c.standard_error, c.truncated);
       std::fflush(stdout);
     }
   }
