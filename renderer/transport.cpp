@@ -251,9 +251,10 @@ class Tracer {
     if constexpr (scattering) {
       if (scattered_weight <= 0) return;
       scattered.weight = scattered_weight;
+      // Its own numbers from here on: those that it was copied with have decided over `path` since.
+      scattered.sampler = path.sampler.split();
       if (!survives(scattered)) return;
       scattered.roulette = roulette_of_scattered * scattered.weight;
-      scattered.sampler = path.sampler.split();
       note("scatter", scattered);
       scatter(shape_, interior_.medium, scattered, scattered.sampler.rng());
       walking_.push_back(scattered);

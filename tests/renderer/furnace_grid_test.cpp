@@ -167,6 +167,15 @@ TEST(FurnaceGrid, CornersAndAFixedSelectionVanish) {
     expect_nothing_there(point, effort, 4 * effort.standard_error, static_cast<int>(points.size()));
 }
 
+TEST(FurnaceGrid, LightThatEntersAKnotAgainAndAgainIsNotLost) {
+  Scene scene = body(build_mesh(knot(240, 24)).mesh, material(1.5, 0, 0.03), 9);
+  scene.width = scene.height = pixels;
+  scene.camera = Camera({0.3, 0.2, 3}, {0.3, 0.2, 0}, {0, 1, 0}, 12, pixels, pixels);
+  const Estimate e = image_mean(trace(scene, 160));
+  EXPECT_NEAR(e.mean, 1, 4 * e.standard_error);
+  EXPECT_LT(e.standard_error, 3.5e-5);
+}
+
 /// The long form: the whole grid, each to 1e-3 at four standard errors.
 class LongFurnaceGrid : public testing::TestWithParam<std::tuple<Object, double>> {};
 
