@@ -25,6 +25,7 @@ ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, doub
     texels_[i] = {p[0] * s, p[1] * s, p[2] * s, 0};
   }
   build_sampling();
+  build_irradiance();
 }
 
 void ImageEnvironment::build_sampling() {
@@ -69,6 +70,52 @@ void ImageEnvironment::build_sampling() {
   }
   for (std::uint32_t i : small) alias_[i] = {1, i};
   for (std::uint32_t i : large) alias_[i] = {1, i};
+}
+
+namespace {
+
+/// The real spherical harmonics up to the second order, without their norms.
+std::array<double, 9> quadratic_basis(Vec3 n) {
+  return {
+      1, n.x, n.y, n.z, n.x * n.y, n.y * n.z, n.x * n.z, 3 * n.z * n.z - 1, n.x * n.x - n.y * n.y};
+}
+
+}  // namespace
+
+void ImageEnvironment::build_irradiance() {
+  // Their squared norms over 4 pi, and those of the clamped cosine: pi, 2 pi / 3, pi / 4.
+  constexpr std::array<double, 9> norm{1, 3, 3, 3, 15, 15, 15, 5. / 4, 15. / 4};
+  constexpr std::array<double, 9> lobe{1, 2. / 3, 2. / 3, 2. / 3, .25, .25, .25, .25, .25};
+  std::array<std::array<double, 3>, 9> moments{};
+  for (int y = 0; y < height_; ++y) {
+    const double theta = pi * (y + 0.5) / height_, sin_theta = std::sin(theta);
+    const double solid_angle =
+        2 * pi / width_ * (std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_));
+    for (int x = 0; x < width_; ++x) {
+      const double azimuth = 2 * pi * (0.5 - (x + 0.5) / width_) + rotation_rad_;
+      const std::array<double, 9> basis = quadratic_basis(
+          {sin_theta * std::sin(azimuth), std::cos(theta), sin_theta * std::cos(azimuth)});
+      const Texel& t = texels_[std::size_t(y) * width_ + x];
+      for (std::size_t i = 0; i < 9; ++i) {
+        moments[i][0] += solid_angle * basis[i] * t.r;
+        moments[i][1] += solid_angle * basis[i] * t.g;
+        moments[i][2] += solid_angle * basis[i] * t.b;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < 9; ++i) {
+    const double scale = norm[i] * lobe[i] / 4;
+    irradiance_[i] = {static_cast<float>(scale * moments[i][0]),
+                      static_cast<float>(scale * moments[i][1]),
+                      static_cast<float>(scale * moments[i][2])};
+  }
+}
+
+Rgb ImageEnvironment::irradiance(Vec3 n) const {
+  const std::array<double, 9> basis = quadratic_basis(n);
+  Rgb sum;
+  for (std::size_t i = 0; i < 9; ++i) sum += irradiance_[i] * static_cast<float>(basis[i]);
+  return sum;
 }
 
 ImageEnvironment::Coordinates ImageEnvironment::coordinates(Vec3 d) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <variant>
 #include <vector>
@@ -40,6 +41,9 @@ class ImageEnvironment {
   EnvironmentValue value_from(Vec3 direction) const;
   /// Draws a direction in proportion to luminance times solid angle, a pixel cell at a time.
   EnvironmentSample sample(Sample2 u) const;
+  /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order
+  /// (Ramamoorthi and Hanrahan 2001): within a few percent, and possibly negative under a hard sun.
+  Rgb irradiance(Vec3 n) const;
 
  private:
   struct Texel {
@@ -58,11 +62,13 @@ class ImageEnvironment {
   Rgb bilinear(float x, float y) const;
   double cell_pdf(int x, int y, double sin_theta) const;
   void build_sampling();
+  void build_irradiance();
 
   int width_, height_;
   double rotation_rad_;
   std::vector<Texel> texels_;
   std::vector<Alias> alias_;
+  std::array<Rgb, 9> irradiance_;  ///< coefficients of the polynomials of quadratic_basis()
 };
 
 using Environment = std::variant<UniformEnvironment, ImageEnvironment>;

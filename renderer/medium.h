@@ -40,6 +40,11 @@ struct Medium {
 
   double sample_flight(Rng& rng) const { return -std::log(rng.uniform_positive()) / sigma_s; }
 
+  /// Density of a turn by this cosine, per solid angle.
+  double phase(double cos_theta) const {
+    return g == 0 ? 1 / (4 * std::numbers::pi) : henyey_greenstein(g, cos_theta);
+  }
+
   Vec3 scatter(Vec3 direction, Rng& rng) const {
     if (g == 0) return sample_isotropic(rng);
     const Sample2 u = rng.uniform2();

@@ -16,8 +16,6 @@ namespace translucube {
 namespace {
 
 constexpr int tile_size = 16;
-/// Camera samples of a pixel that are in flight at once: a tile's paths then fit the L2 cache.
-constexpr std::uint32_t samples_at_once = 4;
 
 double thread_cpu_seconds() {
   timespec now{};
@@ -28,6 +26,8 @@ double thread_cpu_seconds() {
 int thread_count(int asked) {
   return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
+
+int tile_columns(int width) { return (width + tile_size - 1) / tile_size; }
 
 void store(const Tile& tile, PassFilm& film) {
   const std::size_t lane_size = std::size_t(3) * film.width * film.height;
@@ -70,8 +70,7 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
   film.shares = scene.spread.has_value();
   film.pass = pass;
   film.sum.resize(std::size_t(3) * film.width * film.height * film.lanes);
-  const int columns = (film.width + tile_size - 1) / tile_size,
-            rows = (film.height + tile_size - 1) / tile_size;
+  const int columns = tile_columns(film.width), rows = (film.height + tile_size - 1) / tile_size;
   std::vector<TraceCounters> counters(std::size_t(columns) * rows);
   std::atomic<int> next{0};
   std::atomic<double> cpu_seconds{0};
@@ -79,6 +78,7 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
     const double start = thread_cpu_seconds();
     for (int i = next++; i < columns * rows && !stop.stop_requested(); i = next++) {
       Tile tile;
+      tile.index = static_cast<std::uint32_t>(i);
       tile.x0 = i % columns * tile_size;
       tile.y0 = i / columns * tile_size;
       tile.width = std::min(tile_size, film.width - tile.x0);
@@ -187,6 +187,8 @@ std::string explain_sample(const Scene& scene, int x, int y, std::uint32_t sampl
   for (std::uint32_t i = 0; pass.first_sample + pass.count <= sample; ++i)
     pass = *plan_pass(i, pixels);
   Tile tile;
+  tile.index =
+      static_cast<std::uint32_t>(y / tile_size * tile_columns(scene.width) + x / tile_size);
   tile.x0 = x;
   tile.y0 = y;
   tile.width = tile.height = 1;

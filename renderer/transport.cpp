@@ -1,6 +1,6 @@
 // Light transport in the cube, backwards from the camera, in stages:
 //
-//   emit -> enter -> walk -> boundary -> (connect) -> collect
+//   emit -> enter -> walk -> boundary -> connect
 //
 // Each stage is one loop over a queue of paths. What is carried is an achromatic weight and the
 // length travelled inside the body; absorption comes with the film's lanes. At a smooth boundary
@@ -12,13 +12,14 @@
 #include "renderer/transport.h"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <type_traits>
 
+#include "renderer/collector.h"
 #include "renderer/dipole_exit.h"
 #include "renderer/microsurface.h"
-#include "renderer/walk.h"
+#include "renderer/path.h"
+#include "renderer/sphere_connector.h"
 
 namespace translucube {
 namespace {
@@ -39,17 +40,6 @@ constexpr std::uint32_t dipole_arrival_cap = 16;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Path : Particle {
-  Vec3 n;  ///< outward normal, at the boundary
-  double weight = 1;
-  double roulette = roulette_of_clear;  ///< weight below which chance decides
-  double pdf = 0;  ///< of d, where connect() had a chance to find it too; 0: none had
-  std::uint32_t pixel = 0, events = 0;
-  /// Of the dipole model: colour so far, times back at the body from outside.
-  std::uint32_t tint = 0, arrivals = 0;
-  PathSampler sampler;
-};
-
 template <class Shape, class Interface, class Interior>
 class Tracer {
   static constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
@@ -57,19 +47,22 @@ class Tracer {
   static constexpr bool lambertian = std::is_same_v<Interior, LambertianInterior>;
   static constexpr bool dense = std::is_same_v<Interior, DensePigmentInterior>;
   static constexpr bool dipole = std::is_same_v<Interior, DipoleInterior>;
+  /// Whether scattering vertices may look for light through the boundary.
+  static constexpr bool connecting = smooth && scattering && std::is_same_v<Shape, Sphere>;
   /// Whether light goes on inside the body.
   static constexpr bool open =
       scattering || dense || dipole || std::is_same_v<Interior, ClearInterior>;
 
  public:
   Tracer(const Scene& scene, const Shape& shape, const Interface& interface,
-         const Interior& interior, Tile& tile, std::string* log)
+         const Interior& interior, Tile& tile, std::uint64_t key, std::string* log)
       : scene_(scene),
         shape_(shape),
         interface_(interface),
         interior_(interior),
         tile_(tile),
-        log_(log) {}
+        collector_(scene, tile, log),
+        connector_(scene, collector_, key) {}
 
   void run(std::uint32_t pass_index, std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t s = first; s < first + count; ++s) emit(pass_index, s);
@@ -78,6 +71,7 @@ class Tracer {
       walk();
       boundary();
     }
+    connector_.flush();
   }
 
  private:
@@ -93,10 +87,11 @@ class Tracer {
         Path path;
         path.sampler = PathSampler(pixel_key, sample);
         path.pixel = static_cast<std::uint32_t>(y * tile_.width + x);
+        path.roulette = roulette_of_clear;
         const Sample2 u = path.sampler.next2();
         path.p = scene_.camera.position;
         path.d = scene_.camera.direction(px + u.u, py + u.v);
-        note("emit", path);
+        collector_.note("emit", path);
         ++tile_.counters.camera_samples;
         if (!scene_.camera_inside) {
           arriving_.push_back(path);
@@ -117,7 +112,7 @@ class Tracer {
       }
       path.p = hit.p;
       path.n = hit.n;
-      note("enter", path);
+      collector_.note("enter", path);
       if (!count_event(path)) continue;
       if constexpr (smooth)
         enter_smooth(path);
@@ -133,7 +128,7 @@ class Tracer {
       for (Path& path : walking_) {
         Hit hit;
         if (!cross_body(path, hit)) {
-          give_up(path);
+          collector_.give_up(path);
           continue;
         }
         arrive_inside(path, hit);
@@ -146,12 +141,15 @@ class Tracer {
   /// To the boundary; false for a path that lost its way.
   bool cross_body(Path& path, Hit& hit) {
     if constexpr (scattering) {
-      return walk_to_boundary(shape_, interior_.medium, path, path.sampler.rng(), hit);
+      return walk_to_boundary(shape_, interior_.medium, path, path.sampler.rng(), hit,
+                              [&](auto&& place) { scatter_at(place, path); });
     } else if constexpr (dense) {
       // In the half space below the point where it entered, to leave at that very point.
       const Frame frame(path.n);
       Particle below{{}, frame.to_local(path.d), path.length};
-      walk_to_boundary(HalfSpace{}, interior_.medium, below, path.sampler.rng(), hit);
+      walk_to_boundary(
+          HalfSpace{}, interior_.medium, below, path.sampler.rng(), hit,
+          [&](auto&& place) { scatter(place, interior_.medium, below, path.sampler.rng()); });
       path.d = frame.to_world(below.d);
       path.length = below.length;
       hit.p = path.p;
@@ -162,17 +160,38 @@ class Tracer {
     }
   }
 
-  template <class Place>
+  /// `collide(surroundings)` gives the particle its new direction.
+  template <class Place, class Collide>
   bool walk_to_boundary(const Place& body, const Medium& medium, Particle& particle, Rng& rng,
-                        Hit& hit) {
+                        Hit& hit, Collide&& collide) {
     auto&& place = surroundings(body, medium);
     ++tile_.counters.flights;
     while (fly(place, medium, particle, rng, hit)) {
       ++tile_.counters.flights;
       if (strayed(particle)) return false;
-      scatter(place, medium, particle, rng);
+      collide(place);
     }
     return true;
+  }
+
+  /// A collision, which looks for light where that may be found.
+  template <class Place>
+  void scatter_at(Place&& place, Path& path) {
+    const Medium& medium = interior_.medium;
+    Rng& rng = path.sampler.rng();
+    if constexpr (connecting) {
+      path.phase = 0;
+      if (large_step(place, medium, path, rng, connector_.margin())) return;
+      const Vec3 before = path.d;
+      if (connector_.active()) connector_.connect(path);
+      path.d = medium.scatter(before, rng);
+      if (connector_.active()) {
+        path.vertex = path.p;
+        path.phase = medium.phase(dot(before, path.d));
+      }
+    } else {
+      scatter(place, medium, path, rng);
+    }
   }
 
   /// Paths inside at the boundary: what leaves is collected with its weight, what stays walks on.
@@ -184,7 +203,7 @@ class Tracer {
           leave_smooth(path);
         else
           leave_rough(path);
-        if (survives(path)) walking_.push_back(path);
+        if (path.survives()) walking_.push_back(path);
       }
     }
     leaving_.clear();
@@ -217,7 +236,7 @@ class Tracer {
     while (true) {
       Hit hit;
       if (!shape_.exit(path.p, path.d, infinity, hit)) {
-        give_up(path);
+        collector_.give_up(path);
         break;
       }
       if constexpr (scattering) {
@@ -233,7 +252,7 @@ class Tracer {
           scattered.length += std::fmin(s, hit.t);
         }
         path.weight *= std::exp(-sigma_s * hit.t);
-        if (!survives(path)) break;
+        if (!path.survives()) break;
       }
       arrive_inside(path, hit);
       if (!count_event(path)) break;
@@ -246,17 +265,17 @@ class Tracer {
         break;
       }
       leave_smooth(path);
-      if (!survives(path)) break;
+      if (!path.survives()) break;
     }
     if constexpr (scattering) {
       if (scattered_weight <= 0) return;
       scattered.weight = scattered_weight;
       // Its own numbers from here on: those that it was copied with have decided over `path` since.
       scattered.sampler = path.sampler.split();
-      if (!survives(scattered)) return;
+      if (!scattered.survives()) return;
       scattered.roulette = roulette_of_scattered * scattered.weight;
-      note("scatter", scattered);
-      scatter(shape_, interior_.medium, scattered, scattered.sampler.rng());
+      collector_.note("scatter", scattered);
+      scatter_at(shape_, scattered);
       walking_.push_back(scattered);
     }
   }
@@ -283,14 +302,15 @@ class Tracer {
   void leave_smooth(Path& path) {
     if (traps(path)) {
       roll(path);
-      if constexpr (scattering) scatter(shape_, interior_.medium, path, path.sampler.rng());
+      if constexpr (scattering) scatter_at(shape_, path);
       return;
     }
     const double reflectance = fresnel(dot(path.d, path.n), 1 / interface_.ior);
     if (reflectance < 1) {
       const Vec3 out = *refract(-path.d, -path.n, 1 / interface_.ior);
-      leave(path, out, path.weight * (1 - reflectance), 0);
+      leave(path, out, path.weight * (1 - reflectance), connector_.pdf(path));
     }
+    path.phase = 0;
     path.weight *= reflectance;
     path.d = reflect(-path.d, path.n);
   }
@@ -375,21 +395,24 @@ class Tracer {
     path.weight *= all;
     Sample2 u = path.sampler.next2();
     if (u.u < share_here) {
-      if (interior_.absorbing) tint(path, [](const DipoleColor& color) { return color.total(); });
+      if (interior_.absorbing)
+        collector_.tint(path, interior_.colors,
+                        [](const DipoleColor& color) { return color.total(); });
     } else {
       u.u = (u.u - share_here) / (1 - share_here);
       const DipoleExit from =
           sample_exit(shape_, interior_.radii, path.p, path.n, u, path.sampler.rng());
       path.weight *= from.weight / interior_.radii.mass();
       arriving.sampler = path.sampler;
-      if (from.lost) give_up(path);
+      if (from.lost) collector_.give_up(path);
       if (path.weight <= 0) return;
       path.p = from.p;
       path.n = from.n;
       if (interior_.absorbing)
-        tint(path, [&](const DipoleColor& color) { return color.at(from.r); });
+        collector_.tint(path, interior_.colors,
+                        [&](const DipoleColor& color) { return color.at(from.r); });
     }
-    note("dipole", path);
+    collector_.note("dipole", path);
     const Frame frame(path.n);
     const auto evaluate = [&](Vec3 wi) { return interior_.base.evaluate({0, 0, cos_o}, wi); };
     connect(path, frame, evaluate);
@@ -400,24 +423,15 @@ class Tracer {
     arriving.sampler = path.sampler;
   }
 
-  /// Colours what the path brings from here on, for each lane.
-  template <class Operator>
-  void tint(Path& path, Operator&& color) {
-    const std::size_t lanes = interior_.colors.size(), before = path.tint * lanes;
-    if (tints_.empty()) tints_.assign(lanes, identity_operator);
-    path.tint = static_cast<std::uint32_t>(tints_.size() / lanes);
-    for (std::size_t lane = 0; lane < lanes; ++lane)
-      tints_.push_back(multiply(tints_[before + lane], color(interior_.colors[lane])));
-  }
-
   // ---- between stages
 
   /// Next-event estimation at a rough exit: a direction of the environment, weighted by the balance
   /// heuristic (Veach 1995) against those that the interface samples itself.
   template <class Evaluate>
   void connect(Path& path, const Frame& frame, Evaluate&& evaluate) {
-    const EnvironmentSample light = std::visit(
-        [&](const auto& e) { return e.sample(path.sampler.next2()); }, scene_.environment);
+    const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
+    if (environment == nullptr) return;  // the same from everywhere: nothing to look for
+    const EnvironmentSample light = environment->sample(path.sampler.next2());
     ++tile_.counters.connections;
     const LobeValue value = evaluate(frame.to_local(light.direction));
     if (value.f_cos <= 0) return;
@@ -425,13 +439,14 @@ class Tracer {
       Hit hit;
       if (shape_.enter(path.p, light.direction, hit)) return;
     }
-    note("connect", path);
-    collect(path, light.value.radiance, path.weight * value.f_cos / (light.value.pdf + value.pdf));
+    collector_.note("connect", path);
+    collector_.collect(path, light.value.radiance,
+                       path.weight * value.f_cos / (light.value.pdf + value.pdf));
   }
 
   /// Into the body.
   void inward(Path& path) {
-    if (!survives(path)) return;
+    if (!path.survives()) return;
     if constexpr (smooth && !dense) {
       follow_unscattered(path);
     } else {
@@ -454,56 +469,27 @@ class Tracer {
       // A model that gains energy has no answer in deep cavities: the branches must not multiply.
       if constexpr (dipole) {
         if (++path.arrivals > 2) path.roulette = 1;
-        if (path.arrivals > dipole_arrival_cap) return give_up(path);
+        if (path.arrivals > dipole_arrival_cap) return collector_.give_up(path);
       }
-      if (survives(path)) arriving_.push_back(path);
+      if (path.survives()) arriving_.push_back(path);
     }
   }
 
   void escape(const Path& path) {
-    note("escape", path);
-    std::visit(
-        [&](const auto& environment) {
-          if (path.pdf > 0) {
-            const EnvironmentValue light = environment.value_from(path.d);
-            collect(path, light.radiance, path.weight * path.pdf / (path.pdf + light.pdf));
-          } else {
-            collect(path, environment.radiance_from(path.d), path.weight);
-          }
-        },
-        scene_.environment);
-  }
-
-  void collect(const Path& path, Rgb radiance, double weight) {
-    const Rgb brought = radiance * static_cast<float>(weight);
-    const std::size_t stride = std::size_t(3) * tile_.width * tile_.height;
-    float* pixel = &tile_.sum[std::size_t(3) * path.pixel];
-    if (scene_.spread) {
-      if (!std::isfinite(brought.r + brought.g + brought.b + static_cast<float>(path.length))) {
-        ++tile_.counters.nan_samples;
-        return;
-      }
-      const BinWeights spread = (*scene_.spread)(path.length);
-      pixel += spread.bin * stride;
-      for (const float share : spread.weights) {
-        pixel[0] += brought.r * share;
-        pixel[1] += brought.g * share;
-        pixel[2] += brought.b * share;
-        pixel += stride;
-      }
-      return;
-    }
-    for (std::size_t i = 0; i < scene_.lanes.size(); ++i) {
-      Rgb developed = std::visit([&](const auto& lane) { return lane.apply(brought, path.length); },
-                                 scene_.lanes[i]);
-      if constexpr (dipole)
-        if (path.tint > 0)
-          developed = apply_operator(tints_[path.tint * scene_.lanes.size() + i], developed);
-      if (!std::isfinite(developed.r + developed.g + developed.b)) ++tile_.counters.nan_samples;
-      pixel[0] += developed.r;
-      pixel[1] += developed.g;
-      pixel[2] += developed.b;
-      pixel += stride;
+    collector_.note("escape", path);
+    if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
+      return collector_.collect(path, uniform->radiance, path.weight);
+    const auto& environment = std::get<ImageEnvironment>(scene_.environment);
+    if (path.pdf == 0)
+      return collector_.collect(path, environment.radiance_from(path.d), path.weight);
+    const EnvironmentValue light = environment.value_from(path.d);
+    const double share = path.pdf / (path.pdf + light.pdf);
+    if constexpr (connecting) {
+      const Rgb expected = connector_.expected(path.n);
+      collector_.collect(path, expected + (light.radiance - expected) * static_cast<float>(share),
+                         path.weight);
+    } else {
+      collector_.collect(path, light.radiance, path.weight * share);
     }
   }
 
@@ -511,27 +497,14 @@ class Tracer {
     path.length += hit.t;
     path.p = hit.p;
     path.n = hit.n;
-    note("boundary", path);
-  }
-
-  /// Unbiased: the weight lost to those that end is given to those that survive.
-  static bool survives(Path& path) {
-    if (path.weight >= path.roulette) return true;
-    if (path.sampler.rng().uniform() * path.roulette >= path.weight) return false;
-    path.weight = path.roulette;
-    return true;
+    collector_.note("boundary", path);
   }
 
   bool count_event(Path& path) {
     ++tile_.counters.boundary_events;
     if (++path.events < (scattering ? scattering_event_cap : clear_event_cap)) return true;
-    give_up(path);
+    collector_.give_up(path);
     return false;
-  }
-
-  void give_up(const Path& path) {
-    note("give up", path);
-    tile_.counters.truncated_energy += path.weight;
   }
 
   /// A path that slipped out of a mesh by rounding would walk for ever.
@@ -540,26 +513,22 @@ class Tracer {
     return false;
   }
 
-  void note(const char* event, const Path& path) {
-    if (log_ == nullptr) return;
-    char line[256];
-    std::snprintf(
-        line, sizeof line,
-        "%-9s p (%.9g, %.9g, %.9g) d (%.6f, %.6f, %.6f) length %.9g weight %.9g pdf %.6g\n", event,
-        path.p.x, path.p.y, path.p.z, path.d.x, path.d.y, path.d.z, path.length, path.weight,
-        path.pdf);
-    *log_ += line;
-  }
-
   const Scene& scene_;
   const Shape& shape_;
   const Interface& interface_;
   const Interior& interior_;
   Tile& tile_;
-  std::string* log_;
+  Collector collector_;
+  std::conditional_t<connecting, SphereConnector, NoConnector> connector_;
   std::vector<Path> arriving_, walking_, leaving_;
-  std::vector<ColorOperator> tints_;  ///< lanes to a tint; the first changes nothing
 };
+
+/// Of what the paths of a tile share, a few samples at a time.
+std::uint64_t shared_key(const Scene& scene, std::uint32_t pass_index, std::uint32_t first,
+                         const Tile& tile) {
+  const std::uint64_t batch = hash_combine(pass_index, first / samples_at_once);
+  return hash_combine(hash_combine(scene.seed, tile.index), batch);
+}
 
 }  // namespace
 
@@ -567,7 +536,9 @@ void trace_tile(const Scene& scene, std::uint32_t pass_index, std::uint32_t firs
                 std::uint32_t count, Tile& tile, std::string* log) {
   std::visit(
       [&](const auto& shape, const auto& interface, const auto& interior) {
-        Tracer(scene, shape, interface, interior, tile, log).run(pass_index, first, count);
+        Tracer(scene, shape, interface, interior, tile, shared_key(scene, pass_index, first, tile),
+               log)
+            .run(pass_index, first, count);
       },
       scene.shape, scene.interface, scene.interior);
 }

@@ -9,8 +9,12 @@
 
 namespace translucube {
 
+/// Camera samples of a pixel that are in flight at once: a tile's paths then fit the L2 cache.
+inline constexpr std::uint32_t samples_at_once = 4;
+
 /// A rectangle of pixels and what its paths bring; owned by one thread at a time.
 struct Tile {
+  std::uint32_t index = 0;  ///< of the image's tiles: seeds what the tile's paths share
   int x0 = 0, y0 = 0, width = 0, height = 0;
   std::vector<float> sum;  ///< lanes x height x width x 3
   TraceCounters counters;

@@ -26,21 +26,25 @@ bool fly(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng, Hit&
   return true;
 }
 
-/// A collision: a new direction; deep inside an isotropic medium after one large step to the
-/// surface of the largest ball that fits.
+/// After a collision deep inside an isotropic medium: one large step to the surface of the largest
+/// ball that stays `margin` mean free paths inside the boundary. False where none fits.
+template <class Shape>
+bool large_step(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng,
+                double margin = 0) {
+  if (medium.g != 0) return false;
+  const int level = ball_level(shape.clearance(particle.p) * medium.sigma_s - margin);
+  if (level < 0) return false;
+  const BallCrossing crossing = cross_ball(level, rng);
+  particle.p = particle.p + (ball_radius(level) / medium.sigma_s) * crossing.outward;
+  particle.d = crossing.direction;
+  particle.length += crossing.length / medium.sigma_s;
+  return true;
+}
+
+/// A collision: a new direction, after a large step where there is room for one.
 template <class Shape>
 void scatter(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng) {
-  if (medium.g == 0) {
-    const int level = ball_level(shape.clearance(particle.p) * medium.sigma_s);
-    if (level >= 0) {
-      const BallCrossing crossing = cross_ball(level, rng);
-      particle.p = particle.p + (ball_radius(level) / medium.sigma_s) * crossing.outward;
-      particle.d = crossing.direction;
-      particle.length += crossing.length / medium.sigma_s;
-      return;
-    }
-  }
-  particle.d = medium.scatter(particle.d, rng);
+  if (!large_step(shape, medium, particle, rng)) particle.d = medium.scatter(particle.d, rng);
 }
 
 }  // namespace translucube

@@ -148,6 +148,8 @@ int main(int argc, char** argv) {
          {"mean", {mean[0], mean[1], mean[2]}},
          {"flights_per_sample",
           double(first.film.counters.flights) / double(first.film.counters.camera_samples)},
+         {"connections_per_sample",
+          double(first.film.counters.connections) / double(first.film.counters.camera_samples)},
          {"boundary_events_per_sample", double(first.film.counters.boundary_events) /
                                             double(first.film.counters.camera_samples)}});
   }

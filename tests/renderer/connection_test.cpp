@@ -1,0 +1,183 @@
+// Light found through the smooth boundary of a sphere: every way out is a real one, none is missed,
+// and what is found with them is what the walk alone finds.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "renderer/exit_batch.h"
+#include "renderer/fresnel.h"
+#include "renderer/sphere_exit.h"
+#include "tests/support/scenes.h"
+
+namespace translucube::test {
+namespace {
+
+Vec3 random_direction(Rng& rng) { return sample_isotropic(rng); }
+
+/// Where a ray along d from p inside the unit sphere goes on outside; empty if it is trapped.
+std::optional<Vec3> leaves_along(double ior, Vec3 p, Vec3 d) {
+  Hit hit;
+  if (!Sphere{}.exit(p, d, 1e9, hit)) return {};
+  return refract(-d, -hit.n, 1 / ior);
+}
+
+std::vector<SphereExit> all_exits(double ior, Vec3 p, Vec3 w) {
+  std::vector<SphereExit> found;
+  const SphereExits exits(ior, p);
+  const auto keep = [&](const SphereExit& exit) { found.push_back(exit); };
+  exits.near_towards(w, keep);
+  exits.far_towards(w, keep);
+  return found;
+}
+
+TEST(SphereExits, EveryWayOutLeadsWhereItShould) {
+  Rng rng(1);
+  for (int i = 0; i < 20'000; ++i) {
+    const double ior = 1 + 1.5 * rng.uniform(), rho = std::cbrt(rng.uniform());
+    const Vec3 p = rho * random_direction(rng), w = random_direction(rng);
+    for (const SphereExit& exit : all_exits(ior, p, w)) {
+      const auto out = leaves_along(ior, p, exit.d);
+      ASSERT_TRUE(out) << "ior " << ior << " rho " << rho;
+      EXPECT_LT(length(*out - w), 1e-5) << "ior " << ior << " rho " << rho;
+      EXPECT_NEAR(length(p + exit.distance * exit.d), 1, 1e-9);
+    }
+  }
+}
+
+TEST(SphereExits, NoWayOutIsMissed) {
+  // A ray in any direction that gets out must be among the ways towards where it goes.
+  Rng rng(2);
+  int missed = 0, sought = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    const double ior = 1 + 1.5 * rng.uniform(), rho = std::cbrt(rng.uniform());
+    const Vec3 p = rho * random_direction(rng), d = random_direction(rng);
+    const auto out = leaves_along(ior, p, d);
+    if (!out) continue;
+    ++sought;
+    bool found = false;
+    for (const SphereExit& exit : all_exits(ior, p, *out)) found |= length(exit.d - d) < 1e-4;
+    missed += !found;
+  }
+  // Next to a caustic two ways melt into one, and rounding decides.
+  EXPECT_LT(missed, sought / 2000);
+}
+
+TEST(SphereExits, TheJacobianIsTheRatioOfSolidAngles) {
+  Rng rng(3);
+  for (int i = 0; i < 2000; ++i) {
+    const double ior = 1.1 + rng.uniform(), rho = std::cbrt(rng.uniform());
+    const Vec3 p = rho * random_direction(rng), d = random_direction(rng);
+    const SphereExits exits(ior, p);
+    const Frame frame(d);
+    constexpr double step = 1e-6;
+    const auto out = leaves_along(ior, p, d);
+    const auto out_x = leaves_along(ior, p, normalize(d + step * frame.x));
+    const auto out_y = leaves_along(ior, p, normalize(d + step * frame.y));
+    if (!out || !out_x || !out_y) continue;
+    const double outside = length(cross(*out_x - *out, *out_y - *out)) / (step * step);
+    if (outside < 1e-2 || outside > 1e2) continue;  // caustics and the critical angle
+    EXPECT_NEAR(exits.jacobian(d) * outside, 1, 2e-3) << "ior " << ior << " rho " << rho;
+  }
+}
+
+TEST(SphereExits, ManyAtATimeAreTheSameAsOne) {
+  Rng rng(4);
+  for (const double ior : {1.0, 1.01, 1.33, 1.5, 2.5, 4.0})
+    for (const double g : {0.0, 0.7}) {
+      const Medium medium{5, g};
+      auto batch = std::make_unique<ExitBatch>();
+      std::vector<Vec3> places, before, lights;
+      for (std::size_t i = 0; i < ExitBatch::capacity; ++i) {
+        // Down to a millionth of the radius below the surface.
+        const double depth = std::pow(10, -6 * rng.uniform());
+        places.push_back((1 - depth) * random_direction(rng));
+        before.push_back(random_direction(rng));
+        lights.push_back(random_direction(rng));
+        batch->push(places[i], 1 - depth, before[i], lights[i], 0.1);
+      }
+      find_near_exits({float(ior), float(medium.sigma_s), float(g)}, *batch);
+      int not_found = 0;
+      for (std::size_t i = 0; i < ExitBatch::capacity; ++i) {
+        double share = 0, distance = 0;
+        SphereExits(ior, places[i]).near_towards(lights[i], [&](const SphereExit& exit) {
+          const double pdf = medium.phase(dot(before[i], exit.d)) *
+                             std::exp(-medium.sigma_s * exit.distance) * exit.jacobian;
+          share = (1 - fresnel(exit.cos_i, 1 / ior)) * pdf / (0.1 + pdf);
+          distance = exit.distance;
+        });
+        if (batch->share[i] < 0) {
+          ++not_found;
+          continue;
+        }
+        EXPECT_NEAR(batch->share[i], share, 2e-3 * share + 1e-4)
+            << "ior " << ior << " depth " << 1 - length(places[i]) << " cos "
+            << dot(normalize(places[i]), lights[i]);
+        if (share > 1e-3) {
+          EXPECT_NEAR(batch->distance[i] / distance, 1, 2e-3);
+        }
+      }
+      EXPECT_LE(not_found, 8) << "ior " << ior;
+    }
+}
+
+/// White from everywhere, but as an image: light is looked for all the same.
+ImageEnvironment white_image() {
+  Image image(16, 8);
+  for (float& p : image.pixels) p = 1;
+  return ImageEnvironment(image, 0, 1);
+}
+
+TEST(Connections, OfAWhiteImageKeepTheFurnace) {
+  for (const double sigma_s : {0.2, 2.0, 30.0})
+    for (const double ior : {1.0, 1.5, 2.5}) {
+      Scene scene = body(Sphere{}, material(ior, 0, sigma_s));
+      scene.environment = white_image();
+      look_from_afar(scene, 0.7, 32);
+      const Film film = trace(scene, 512);
+      const Estimate e = image_mean(film);
+      EXPECT_GT(film.counters.connections, 0u);
+      EXPECT_NEAR(e.mean, 1, 3 * e.standard_error) << "sigma_s " << sigma_s << " ior " << ior;
+      EXPECT_LT(e.standard_error, 1e-3);
+    }
+}
+
+TEST(Connections, OfForwardAndBackwardScatteringKeepTheFurnace) {
+  for (const double g : {-0.6, 0.8}) {
+    Scene scene = body(Sphere{}, material(1.5, 0, 4, g));
+    scene.environment = white_image();
+    look_from_afar(scene, 0.7, 32);
+    const Estimate e = image_mean(trace(scene, 512));
+    EXPECT_NEAR(e.mean, 1, 3 * e.standard_error) << "g " << g;
+    EXPECT_LT(e.standard_error, 1e-3);
+  }
+}
+
+/// Light from one side, so that near and far ways out differ, seen through a half-open lane.
+Scene half_lit(double sigma_s, double ior, float sigma_a) {
+  Scene scene = body(Sphere{}, material(ior, 0, sigma_s));
+  scene.environment = half_space_light(false);
+  scene.lanes = {RgbLane{{sigma_a, sigma_a, sigma_a}}};
+  look_from_afar(scene, 0.95, 32);
+  return scene;
+}
+
+TEST(Connections, FindWhatTheWalkAloneFinds) {
+  // A walk between two faces that do not quite touch the sphere's connector: the same body as a
+  // rough one of vanishing roughness, which does not connect its vertices.
+  for (const double sigma_s : {0.3, 3.0, 20.0}) {
+    const Film connected = trace(half_lit(sigma_s, 1.5, 0.3f), 512);
+    Scene plain = half_lit(sigma_s, 1.5, 0.3f);
+    plain.interface = RoughInterface{1.5, Ggx{1e-4}};
+    const Film walked = trace(plain, 2048);
+    EXPECT_GT(connected.counters.connections, 0u);
+    const Estimate a = image_mean(connected), b = image_mean(walked);
+    EXPECT_NEAR(a.mean, b.mean, 4 * std::hypot(a.standard_error, b.standard_error)) << sigma_s;
+    EXPECT_LT(std::hypot(a.standard_error, b.standard_error), 0.01 * b.mean) << sigma_s;
+  }
+}
+
+}  // namespace
+}  // namespace translucube::test
