@@ -2,11 +2,11 @@
 // looks like nothing there, whatever its roughness, density, index and shape. Exact: 1.
 //
 // A picture is made of replicates (passes with their own random numbers), whose spread tells the
-// error by Student's t. Single pixels have tails too heavy for that (a rough dense body of
-// index 2.5 sends most of its light through few paths, and a skewed mean of a thousand samples is
-// far from normal at five sigma), so that cells of 4 x 4 pixels are tested: 16 times as many
-// samples behind every mean, at an image of 64 cells that still tells the limb of a body from its
-// centre.
+// error by Student's t. Single pixels have tails too heavy for that (a skewed mean of a thousand
+// samples is far from normal at five sigma), so that cells of 4 x 4 pixels are tested: 16 times as
+// many samples behind every mean, at an image of 64 cells that still tells the limb of a body from
+// its centre. And light that Russian roulette brings once in thousands of samples may not have come
+// at all, when the spread knows nothing of it: see Replicates::p_value.
 
 #include <gtest/gtest.h>
 
@@ -68,6 +68,7 @@ class Replicates {
  public:
   void add(const PassFilm& film) {
     ++count_;
+    samples_per_cell_ = cell_pixels * cell_pixels * film.pass.count;
     std::array<double, cells + 1> means{};
     for (int y = 0; y < pixels; ++y)
       for (int x = 0; x < pixels; ++x) {
@@ -92,16 +93,20 @@ class Replicates {
   /// "Bounds on Normal Approximations to Student's and the Chi-Square Distributions").
   double p_value(int cell) const {
     const Estimate e = at(cell);
-    constexpr double rounding = 1e-6;  // of single precision: all that a body of index 1 leaves
-    const double off = std::fmax(0.0, std::fabs(e.mean - 1) - rounding), dof = count_ - 1;
+    // If `off` came in parts of the largest weight that roulette gives (1/2), it would be a Poisson
+    // count of off x samples / part events, and vary accordingly.
+    constexpr double part = 0.5;
+    const double off = std::fabs(e.mean - 1), dof = count_ - 1;
     if (off == 0) return 1;
-    const double t = off / e.standard_error;
+    const double t =
+        off / std::hypot(e.standard_error, std::sqrt(off * part / (samples_per_cell_ * count_)));
     const double z = (8 * dof + 1) / (8 * dof + 3) * std::sqrt(dof * std::log1p(t * t / dof));
     return std::erfc(z / std::numbers::sqrt2);
   }
 
  private:
   int count_ = 0;
+  double samples_per_cell_ = 0;  ///< of a replicate
   std::array<double, cells + 1> mean_{}, m2_{};
 };
 
@@ -171,7 +176,7 @@ TEST(FurnaceGrid, LightThatEntersAKnotAgainAndAgainIsNotLost) {
   Scene scene = body(build_mesh(knot(240, 24)).mesh, material(1.5, 0, 0.03), 9);
   scene.width = scene.height = pixels;
   scene.camera = Camera({0.3, 0.2, 3}, {0.3, 0.2, 0}, {0, 1, 0}, 12, pixels, pixels);
-  const Estimate e = image_mean(trace(scene, 160));
+  const Estimate e = image_mean(trace(scene, 208));
   EXPECT_NEAR(e.mean, 1, 4 * e.standard_error);
   EXPECT_LT(e.standard_error, 3.5e-5);
 }
