@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <stdexcept>
 
 #include "renderer/slab_face.h"
 #include "renderer/slab_layer.h"
@@ -135,7 +135,11 @@ std::optional<AddedReadings> add_layers(const SlabBody& body, const SlabChannels
     }
   };
   const auto error = [&] {
-    return std::max(largest_error_of_totals(added.at[0]), largest_error_of_totals(added.at[1]));
+    const double normal = largest_error_of_totals(added.at[0]);
+    const double diffuse = largest_error_of_totals(added.at[1]);
+    if (!std::isfinite(normal) || !std::isfinite(diffuse))
+      throw std::runtime_error("slab optics that are not finite: a bug");
+    return std::max(normal, diffuse);
   };
   const auto resize = [&](int replicates) {
     for (Readings& readings : added.at) readings.replicates.resize(replicates);
@@ -144,7 +148,7 @@ std::optional<AddedReadings> add_layers(const SlabBody& body, const SlabChannels
   if (std::holds_alternative<SmoothInterface>(body.interface)) {
     resize(2);
     for (const int i : {0, 1}) solve(i, smooth_face(streams[i], ior));
-    if (!(error() <= standard_error)) return std::nullopt;
+    if (error() > standard_error) return std::nullopt;
     return added;
   }
   resize(rough_replicates);
@@ -162,7 +166,6 @@ std::optional<AddedReadings> add_layers(const SlabBody& body, const SlabChannels
       for (const RoughFaceSampler& face : faces) added.samples += face.samples_taken();
       return added;
     }
-    if (!std::isfinite(reached)) return std::nullopt;
     const double more = std::pow(reached / standard_error, 2) * 1.1;
     samples = static_cast<std::uint64_t>(
         std::ceil(static_cast<double>(samples) * std::clamp(more, 1.25, 16.0)));
