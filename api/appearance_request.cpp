@@ -42,8 +42,6 @@ void read_appearance(const json& value, const Catalog& catalog, AppearanceReques
   }
   if (const auto seed = request.integer("seed", 0, largest_seed)) out.seed = *seed;
   request.refuse_unknown_keys();
-  if (out.material.pigment_absorption_per_scattering)
-    faults.add("/material/pigment", "pigments are not served by appearance");
 }
 
 json shares(const SlabLight& light, const char* direct) {

@@ -21,6 +21,8 @@ std::string printable(std::string text) {
 }  // namespace
 
 const ProblemKind& kind(ProblemCode code) {
+  static constexpr ProblemKind malformed_http{"urn:translucube:problem:malformed-http", 400,
+                                              "The message is not HTTP"};
   static constexpr ProblemKind malformed_json{"urn:translucube:problem:malformed-json", 400,
                                               "The document is not JSON"};
   static constexpr ProblemKind invalid_request{"urn:translucube:problem:invalid-request", 422,
@@ -40,8 +42,12 @@ const ProblemKind& kind(ProblemCode code) {
                                          "The render is not finished"};
   static constexpr ProblemKind payload_too_large{"urn:translucube:problem:payload-too-large", 413,
                                                  "The body is too large"};
+  static constexpr ProblemKind uri_too_long{"urn:translucube:problem:uri-too-long", 414,
+                                            "The URI is too long"};
   static constexpr ProblemKind unsupported_media_type{
       "urn:translucube:problem:unsupported-media-type", 415, "The body must be application/json"};
+  static constexpr ProblemKind range_not_satisfiable{
+      "urn:translucube:problem:range-not-satisfiable", 416, "The range is not in the file"};
   static constexpr ProblemKind overloaded{"urn:translucube:problem:overloaded", 503,
                                           "The service is busy"};
   static constexpr ProblemKind storage_failure{"urn:translucube:problem:storage-failure", 507,
@@ -49,6 +55,8 @@ const ProblemKind& kind(ProblemCode code) {
   static constexpr ProblemKind internal{"urn:translucube:problem:internal", 500,
                                         "The service failed"};
   switch (code) {
+    case ProblemCode::malformed_http:
+      return malformed_http;
     case ProblemCode::malformed_json:
       return malformed_json;
     case ProblemCode::invalid_request:
@@ -67,8 +75,12 @@ const ProblemKind& kind(ProblemCode code) {
       return not_ready;
     case ProblemCode::payload_too_large:
       return payload_too_large;
+    case ProblemCode::uri_too_long:
+      return uri_too_long;
     case ProblemCode::unsupported_media_type:
       return unsupported_media_type;
+    case ProblemCode::range_not_satisfiable:
+      return range_not_satisfiable;
     case ProblemCode::overloaded:
       return overloaded;
     case ProblemCode::storage_failure:

@@ -15,6 +15,7 @@ struct Fault {
 /// Every way in which the service refuses, in one table (problem.cpp): code -> stable type URI,
 /// HTTP status, title.
 enum class ProblemCode {
+  malformed_http,          // 400: the message is not HTTP, or its body has no clear end
   malformed_json,          // 400
   invalid_request,         // 422
   idempotency_mismatch,    // 422
@@ -24,7 +25,9 @@ enum class ProblemCode {
   conflict,                // 409: the state does not allow it (image of a failed render, ...)
   not_ready,               // 409: the image of a render that is still queued or running
   payload_too_large,       // 413
+  uri_too_long,            // 414
   unsupported_media_type,  // 415
+  range_not_satisfiable,   // 416
   overloaded,              // 503
   storage_failure,         // 507: full disk, store not writable
   internal,                // 500

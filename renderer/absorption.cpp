@@ -33,23 +33,23 @@ SpectralLane::SpectralLane(const SpectralAbsorber& absorber, double sigma_a_peak
   }
   const std::array<const SpectrumTable*, 3> cmf{&cie_x, &cie_y, &cie_z};
   const std::array<const SpectrumTable*, 3> basis{&basis_r, &basis_g, &basis_b};
-  table_.resize(segments * octaves + 1);
-  for (std::size_t node = 0; node < table_.size(); ++node) {
-    const double x = std::ldexp(1 + static_cast<double>(node % segments) / segments,
-                                static_cast<int>(node / segments));
+  constexpr int octaves = 40;
+  table_ = ColorOperatorTable(octaves, [&](double x) {
     Matrix3 xyz{};
     for (int i = 0; i < spectrum_size; ++i) {
       const double transmitted = std::exp(-k[i] * (x - 1)) * cie_d65[i] / white;
       for (int row = 0; row < 3; ++row)
         for (int c = 0; c < 3; ++c) xyz[row][c] += (*cmf[row])[i] * (*basis[c])[i] * transmitted;
     }
+    ColorOperator m;
     for (int row = 0; row < 3; ++row)
       for (int c = 0; c < 3; ++c) {
         double rgb = 0;
         for (int j = 0; j < 3; ++j) rgb += xyz_to_rgb[row][j] * xyz[j][c];
-        table_[node][3 * row + c] = static_cast<float>(rgb);
+        m[3 * row + c] = static_cast<float>(rgb);
       }
-  }
+    return m;
+  });
 }
 
 Lane make_lane(const Absorber& absorber, double peak) {

@@ -3,14 +3,11 @@
 // Absorption is developed, not traced: a path has a radiance L and a length l inside the body, and
 // a lane of the film applies one absorber to (L, l).
 
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <variant>
-#include <vector>
 
+#include "renderer/color_operator.h"
 #include "renderer/material.h"
 #include "renderer/vec.h"
 
@@ -34,21 +31,20 @@ struct RgbLane {
 
 /// The 3 x 3 operator M(l) = integral of cmf_i(lambda) B_c(lambda) exp(-sigma_a(lambda) l), from
 /// RGB to RGB, with B_c the illuminant-weighted basis spectra of spectrum.h; M(0) is the identity.
-/// Tabulated over 1 + sigma_peak l with 32 linear segments to the octave: error below 3e-5 of the
+/// Tabulated over 1 + sigma_peak l (ColorOperatorTable): error below 3e-5 of the
 /// clear value.
 class SpectralLane {
  public:
   /// `sigma_a_peak` [1 / unit of l] >= 0.
   SpectralLane(const SpectralAbsorber& absorber, double sigma_a_peak);
 
-  Rgb apply(Rgb radiance, double length) const;
+  Rgb apply(Rgb radiance, double length) const {
+    return apply_operator(table_.at(1 + sigma_a_peak_ * length), radiance);
+  }
 
  private:
-  using Operator = std::array<float, 9>;  ///< row-major
-  static constexpr int segments = 32, octaves = 40;
-
   double sigma_a_peak_;
-  std::vector<Operator> table_;
+  ColorOperatorTable table_;
 };
 
 /// Infinite density: what was inside the body is gone.
@@ -69,23 +65,5 @@ Lane make_lane(const Absorber& absorber, double sigma_a_peak);
 
 /// The absorber at a wavelength, relative to its peak.
 double relative_absorption(const SpectralAbsorber& absorber, double wavelength_nm);
-
-inline Rgb SpectralLane::apply(Rgb radiance, double length) const {
-  // The exponent and the leading mantissa bits of 1 + sigma l are the segment, the rest is linear
-  // in it.
-  const auto x = static_cast<float>(1 + sigma_a_peak_ * length);
-  const std::uint32_t position =
-      std::bit_cast<std::uint32_t>(x) - std::bit_cast<std::uint32_t>(1.0f);
-  constexpr int fraction_bits = 23 - 5;
-  const std::size_t segment = std::min<std::size_t>(position >> fraction_bits, table_.size() - 2);
-  const float t =
-      static_cast<float>(position & ((1u << fraction_bits) - 1)) * (1.0f / (1u << fraction_bits));
-  const Operator &a = table_[segment], &b = table_[segment + 1];
-  std::array<float, 9> m;
-  for (int i = 0; i < 9; ++i) m[i] = a[i] + t * (b[i] - a[i]);
-  return {m[0] * radiance.r + m[1] * radiance.g + m[2] * radiance.b,
-          m[3] * radiance.r + m[4] * radiance.g + m[5] * radiance.b,
-          m[6] * radiance.r + m[7] * radiance.g + m[8] * radiance.b};
-}
 
 }  // namespace translucube

@@ -1,14 +1,13 @@
 #include "renderer/appearance.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
-#include <thread>
 
-#include "renderer/slab_reading.h"
+#include "renderer/slab_adding.h"
+#include "renderer/slab_threads.h"
 #include "renderer/slab_walk.h"
 
 namespace translucube {
@@ -16,19 +15,6 @@ namespace {
 
 /// Independent estimates whose spread tells the standard error.
 constexpr int replicates = 32;
-
-/// Calls work(i) for every i < count, on `threads` threads.
-template <class Work>
-void in_parallel(int threads, int count, Work&& work) {
-  if (threads == 0) threads = static_cast<int>(std::thread::hardware_concurrency());
-  std::atomic<int> next = 0;
-  const auto run = [&] {
-    for (int i = next++; i < count; i = next++) work(i);
-  };
-  std::vector<std::jthread> helpers;
-  for (int t = 1; t < std::min(threads, count); ++t) helpers.emplace_back(run);
-  run();
-}
 
 /// All replicates of one incidence.
 struct Trial {
@@ -46,14 +32,14 @@ std::uint64_t first_histories(double standard_error) {
   return std::bit_ceil(static_cast<std::uint64_t>(2 / standard_error / replicates));
 }
 
-/// Histories of a replicate after `histories` gave `error`: 2 or 3 times a power of two, where
-/// low-discrepancy points are at their best.
+/// Histories of a replicate after `histories` gave `error`: a little more than it takes, in steps
+/// of an eighth of a power of two for the sake of the low-discrepancy points.
 std::uint64_t next_histories(std::uint64_t histories, double error, double standard_error) {
   const double ratio = std::min(error / standard_error, 8.0);
-  const auto wanted = static_cast<std::uint64_t>(static_cast<double>(histories) * ratio * ratio);
-  const std::uint64_t power = std::bit_ceil(wanted);
-  return std::max(histories + std::bit_floor(histories) / 2,
-                  wanted <= power / 4 * 3 ? power / 4 * 3 : power);
+  const auto wanted =
+      static_cast<std::uint64_t>(1.05 * static_cast<double>(histories) * ratio * ratio);
+  const std::uint64_t step = std::max<std::uint64_t>(1, std::bit_floor(wanted) / 8);
+  return std::max(histories + histories / 8 + 1, (wanted + step - 1) / step * step);
 }
 
 void trace(const SlabBody& body, std::uint64_t seed, std::vector<Trial*> trials, int threads) {
@@ -76,8 +62,8 @@ Interior slab_interior(const Material& material, double thickness_mm) {
   return make_interior(material, thickness_mm);
 }
 
-/// Pigments of infinite density reflect as a half space; with so many mean free paths a slab is
-/// one.
+/// Pigments of infinite density reflect as a half space. A slab of so many transport mean free
+/// paths is one: what it transmits, at most 4/3e-6, bounds what the rest would send back.
 Material with_finite_pigment(Material material, double thickness_mm) {
   if (!material.absorption_per_scattering || !std::isinf(material.coefficients.sigma_s))
     return material;
@@ -85,29 +71,23 @@ Material with_finite_pigment(Material material, double thickness_mm) {
     material.absorption_per_scattering.reset();  // white: the interfaced Lambertian slab
     return material;
   }
-  material.coefficients.sigma_s = 1e6 / thickness_mm;
+  material.coefficients.sigma_s = 1e6 / (1 - material.g) / thickness_mm;
   material.coefficients.sigma_a_peak =
       *material.absorption_per_scattering * material.coefficients.sigma_s;
   return material;
 }
 
-}  // namespace
-
-SlabAppearance slab_appearance(const Material& given, double thickness_mm, double standard_error,
-                               std::uint64_t seed, int threads) {
-  const Material material = with_finite_pigment(given, thickness_mm);
-  const auto start = std::chrono::steady_clock::now();
-  const SlabChannels channels = slab_channels(material, thickness_mm);
-  const auto [least, peak] = std::minmax_element(channels.sigma_a.begin(), channels.sigma_a.end());
-  const SlabBody body{make_interface(material), slab_interior(material, thickness_mm), *least};
+/// Both incidences by walks, until every total has the standard error.
+std::array<Trial, 2> walk(const SlabBody& body, const SlabChannels& channels, double standard_error,
+                          std::uint64_t seed, int threads) {
+  const double peak = *std::max_element(channels.sigma_a.begin(), channels.sigma_a.end());
   const bool walks = needs_walks(body);
-
-  SlabDeveloper developer(channels, *peak);
+  SlabDeveloper developer(channels, peak);
   std::array<Trial, 2> trials{Trial{Incidence::normal, {}, 0, 0, {}},
                               Trial{Incidence::diffuse, {}, 0, 0, {}}};
   for (Trial& trial : trials) {
     trial.readings.unwalked = read_unwalked(body, trial.incidence, channels);
-    trial.tallies.assign(walks ? replicates : 0, SlabTally(std::isinf(*peak) ? 0 : *peak));
+    trial.tallies.assign(walks ? replicates : 0, SlabTally(std::isinf(peak) ? 0 : peak));
     trial.wanted = walks ? first_histories(standard_error) : 0;
   }
   while (trials[0].pending() || trials[1].pending()) {
@@ -126,18 +106,39 @@ SlabAppearance slab_appearance(const Material& given, double thickness_mm, doubl
         trial->wanted = next_histories(trial->histories, error, standard_error);
     }
   }
+  return trials;
+}
+
+}  // namespace
+
+SlabAppearance slab_appearance(const Material& given, double thickness_mm, double standard_error,
+                               std::uint64_t seed, int threads) {
+  const Material material = with_finite_pigment(given, thickness_mm);
+  const auto start = std::chrono::steady_clock::now();
+  const SlabChannels channels = slab_channels(material, thickness_mm);
+  const double least = *std::min_element(channels.sigma_a.begin(), channels.sigma_a.end());
+  const SlabBody body{make_interface(material), slab_interior(material, thickness_mm), least};
 
   SlabAppearance appearance;
-  appearance.normal = optics_of(trials[0].readings);
-  appearance.diffuse = optics_of(trials[1].readings);
-  appearance.haze = haze_of(trials[0].readings);
-  appearance.clarity = clarity_of(trials[0].readings);
-  for (const Trial& trial : trials) {
-    appearance.samples += trial.histories * trial.tallies.size();
-    appearance.largest_standard_error =
-        std::max(appearance.largest_standard_error, largest_error_of_totals(trial.readings));
-  }
   appearance.transport = transport_name(body.interior);
+  std::array<Readings, 2> at;
+  if (auto added = add_layers(body, channels, standard_error, seed, threads)) {
+    at = std::move(added->at);
+    appearance.samples = added->samples;
+    appearance.transport = "adding-doubling";
+  } else {
+    auto trials = walk(body, channels, standard_error, seed, threads);
+    for (const int i : {0, 1}) {
+      appearance.samples += trials[i].histories * trials[i].tallies.size();
+      at[i] = std::move(trials[i].readings);
+    }
+  }
+  appearance.normal = optics_of(at[0]);
+  appearance.diffuse = optics_of(at[1]);
+  appearance.haze = haze_of(at[0]);
+  appearance.clarity = clarity_of(at[0]);
+  appearance.largest_standard_error =
+      std::max(largest_error_of_totals(at[0]), largest_error_of_totals(at[1]));
   appearance.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return appearance;

@@ -49,10 +49,11 @@ struct SlabAppearance {
   /// are the maker's own. 1: no small-angle scattering; -0.92: light spread evenly over both.
   std::optional<Estimate> clarity;
 
-  std::uint64_t samples = 0;          ///< histories, over both incidences
+  std::uint64_t samples = 0;          ///< histories over both incidences, or paths through faces
   double largest_standard_error = 0;  ///< of all totals (R, G, B)
   double seconds = 0;
-  std::string transport;  ///< "interface", "clear", "walk" or "interfaced-lambertian"
+  /// "interface", "clear", "walk", "adding-doubling" (slab_adding.h) or "interfaced-lambertian"
+  std::string transport;
 };
 
 /// Traces until the standard error of every total is `standard_error` or less. The bits depend on

@@ -1,9 +1,7 @@
 #include "renderer/dipole.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 
 #include "renderer/absorption.h"
@@ -126,14 +124,6 @@ double DipoleProfile::sample(double u, double reach) const {
   return std::fmin(std::sqrt(deeper * (deeper + 2 * z)), reach);
 }
 
-ColorOperator multiply(const ColorOperator& a, const ColorOperator& b) {
-  ColorOperator m{};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) m[3 * i + j] += a[3 * i + k] * b[3 * k + j];
-  return m;
-}
-
 DipoleRadii::DipoleRadii(double reduced_sigma_s, double ior, double reach)
     : profile_(0, reduced_sigma_s, ior), reach_(reach) {
   mass_ = local() ? profile_.total() : profile_.within(reach);
@@ -141,10 +131,7 @@ DipoleRadii::DipoleRadii(double reduced_sigma_s, double ior, double reach)
 
 DipoleColor::DipoleColor(const Absorber& absorber, double sigma_a_peak, double reduced_sigma_s,
                          double ior, double reach) {
-  if (std::isinf(sigma_a_peak)) {  // black, however dense the scatterers
-    table_.assign(2, ColorOperator{});
-    return;
-  }
+  if (std::isinf(sigma_a_peak)) return;  // black, however dense the scatterers
   const std::vector<Wavelength> wavelengths =
       std::visit([](const auto& a) { return wavelengths_of(a); }, absorber);
   std::vector<DipoleProfile> profiles;
@@ -158,31 +145,13 @@ DipoleColor::DipoleColor(const Absorber& absorber, double sigma_a_peak, double r
   z_min_ = clear.z_real();
   for (const DipoleProfile& p : profiles) z_min_ = std::fmin(z_min_, p.z_real());
   const int octaves = static_cast<int>(std::ceil(std::log2(1 + reach / z_min_))) + 1;
-  table_.resize(std::size_t(segments) * octaves + 1);
-  for (std::size_t node = 0; node < table_.size(); ++node) {
-    const double x = std::ldexp(1 + static_cast<double>(node % segments) / segments,
-                                static_cast<int>(node / segments));
+  table_ = ColorOperatorTable(octaves, [&](double x) {
     const double r = z_min_ * (x - 1), unabsorbed = clear.reflectance(r);
     // So thin a body that nothing is left even in double precision is never sampled.
-    table_[node] = color_operator(wavelengths, [&](std::size_t i) {
+    return color_operator(wavelengths, [&](std::size_t i) {
       return unabsorbed > 0 ? profiles[i].reflectance(r) / unabsorbed : 0;
     });
-  }
-}
-
-ColorOperator DipoleColor::at(double r) const {
-  // As SpectralLane::apply: the exponent and the leading bits of x are the segment.
-  const auto x = static_cast<float>(1 + r / z_min_);
-  const std::uint32_t position =
-      std::bit_cast<std::uint32_t>(x) - std::bit_cast<std::uint32_t>(1.0f);
-  constexpr int fraction_bits = 23 - 5;
-  const std::size_t segment = std::min<std::size_t>(position >> fraction_bits, table_.size() - 2);
-  const float t =
-      static_cast<float>(position & ((1u << fraction_bits) - 1)) * (1.0f / (1u << fraction_bits));
-  const ColorOperator &a = table_[segment], &b = table_[segment + 1];
-  ColorOperator m;
-  for (int i = 0; i < 9; ++i) m[i] = a[i] + t * (b[i] - a[i]);
-  return m;
+  });
 }
 
 }  // namespace translucube

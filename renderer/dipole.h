@@ -29,8 +29,8 @@
 // over the path length (absorption.h). Sampling never depends on the colour of the light.
 
 #include <array>
-#include <vector>
 
+#include "renderer/color_operator.h"
 #include "renderer/material.h"
 #include "renderer/vec.h"
 
@@ -60,16 +60,6 @@ class DipoleProfile {
   std::array<double, 2> z_;         ///< of the real and of the virtual source
   std::array<double, 2> strength_;  ///< integral of each source's part of R_d
 };
-
-/// From RGB to RGB, row-major.
-using ColorOperator = std::array<float, 9>;
-inline constexpr ColorOperator identity_operator{1, 0, 0, 0, 1, 0, 0, 0, 1};
-inline Rgb apply_operator(const ColorOperator& m, Rgb c) {
-  return {m[0] * c.r + m[1] * c.g + m[2] * c.b, m[3] * c.r + m[4] * c.g + m[5] * c.b,
-          m[6] * c.r + m[7] * c.g + m[8] * c.b};
-}
-/// First b, then a.
-ColorOperator multiply(const ColorOperator& a, const ColorOperator& b);
 
 /// Where light that comes out at a point went in: radii drawn from R_d of the body without its
 /// absorber, so that no absorber changes what is traced (as in transport.cpp).
@@ -103,16 +93,14 @@ class DipoleColor {
               double reach);
 
   /// R_d(r) over that of the body without absorber, for r <= reach.
-  ColorOperator at(double r) const;
+  ColorOperator at(double r) const { return table_.at(1 + r / z_min_); }
   /// The integral of R_d over the plane.
   const ColorOperator& total() const { return total_; }
 
  private:
-  static constexpr int segments = 32;  ///< to the octave of 1 + r / z_min, linear within
-
   double z_min_ = 1;
   ColorOperator total_{};
-  std::vector<ColorOperator> table_;
+  ColorOperatorTable table_;  ///< over 1 + r / z_min
 };
 
 }  // namespace translucube

@@ -1,6 +1,6 @@
 #pragma once
 
-// The only door to image files; image_io.cpp is the only file that includes OpenImageIO.
+// The only door to image files; image_io*.cpp are the only files that include OpenImageIO.
 
 #include <cstdint>
 #include <filesystem>

@@ -25,8 +25,8 @@ constexpr double jump_depth = 16, jump_margin = 4;
 /// that mean and follows Chandrasekhar's H (1960, section 16) within a few percent.
 constexpr double milne_length = 0.7104, milne_slope = 0.6036;
 
-const double core_sin2 = std::pow(std::sin(core_half_angle_deg * std::numbers::pi / 180), 2);
-const double ring_sin2 = std::pow(std::sin(ring_half_angle_deg * std::numbers::pi / 180), 2);
+const double core_sin2 = sin2_of_degrees(core_half_angle_deg);
+const double ring_sin2 = sin2_of_degrees(ring_half_angle_deg);
 
 /// Time at which a Brownian motion of variance 2 t first leaves [-1, 1] from its centre. Its
 /// Laplace transform 1 / cosh(sqrt s) is a product over exponential times of means
@@ -108,7 +108,8 @@ class Walk {
     z_ = forwards ? path * mu : 1 - path * mu;
     mu_ = forwards ? mu : -mu;
     length_ = crossings / mu + path;
-    scatter(sampler_.next2());
+    const Sample2 turn = sampler_.next2();
+    scatter(turn.u, std::cos(2 * std::numbers::pi * turn.v));
     return true;
   }
 
@@ -128,7 +129,7 @@ class Walk {
           if (std::fmin(z_, 1 - z_) > jump_depth_)
             jump();
           else
-            scatter({rng.uniform(), interior_.medium.g == 0 ? 0 : rng.uniform()});
+            scatter(rng.uniform(), interior_.medium.g == 0 ? 0 : sample_cos_phi(rng));
           continue;
         }
       }
@@ -143,16 +144,26 @@ class Walk {
     }
   }
 
-  void scatter(Sample2 u) {
+  void scatter(double u, double cos_phi) {
     const double g = interior_.medium.g;
     if (g == 0) {
-      mu_ = 2 * u.u - 1;
+      mu_ = 2 * u - 1;
       return;
     }
-    const double cos_theta = sample_henyey_greenstein(g, u.u);
+    const double cos_theta = sample_henyey_greenstein(g, u);
     const double sines = (1 - cos_theta * cos_theta) * std::fmax(0.0, 1 - mu_ * mu_);
-    mu_ = mu_ * cos_theta + std::sqrt(std::fmax(0.0, sines)) * std::cos(2 * std::numbers::pi * u.v);
+    mu_ = mu_ * cos_theta + std::sqrt(std::fmax(0.0, sines)) * cos_phi;
     mu_ = std::fmin(1.0, std::fmax(-1.0, mu_));
+  }
+
+  /// Of an azimuth, without a cosine: that of twice the angle of a point in the unit disc (von
+  /// Neumann 1951).
+  static double sample_cos_phi(Rng& rng) {
+    while (true) {
+      const Sample2 u = rng.uniform2();
+      const double a = 2 * u.u - 1, b = 2 * u.v - 1, s = a * a + b * b;
+      if (s < 1 && s > 0) return (a * a - b * b) / s;
+    }
   }
 
   /// Mirrored at the faces, back into the slab.

@@ -7,7 +7,9 @@
 // Absorption is not traced: a tally keeps the weight of the light that leaves over the length it
 // travelled inside, and any absorber is developed from it (design.md section 1).
 
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "renderer/scene_data.h"
@@ -22,6 +24,10 @@ enum class SlabExit { reflected, core, ring, wide };
 inline constexpr int slab_exits = 4;
 /// Half angles of the cones around the incident direction: core < ring < wide [degrees].
 inline constexpr double core_half_angle_deg = 0.5, ring_half_angle_deg = 2.5;
+inline double sin2_of_degrees(double degrees) {
+  const double sine = std::sin(degrees * std::numbers::pi / 180);
+  return sine * sine;
+}
 
 /// A slab of thickness 1.
 struct SlabBody {

@@ -3,9 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <stop_token>
@@ -15,6 +13,7 @@
 #include "renderer/explorable.h"
 #include "renderer/render.h"
 #include "server/cli.h"
+#include "server/cli_input.h"
 #include "server/cli_outputs.h"
 #include "server/file.h"
 #include "server/signals.h"
@@ -23,21 +22,6 @@ namespace translucube::server {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string read_document(const std::string& name, std::uint64_t limit) {
-  std::ifstream file;
-  if (name != "-") {
-    if (fs::is_directory(name)) throw Refusal{exit_bad_request, name + ": is a folder\n"};
-    file.open(name, std::ios::binary);
-    if (!file) throw Refusal{exit_bad_request, name + ": cannot be read\n"};
-  }
-  std::istream& in = name == "-" ? std::cin : file;
-  // One byte more than the parser takes, so that it is the parser that refuses.
-  std::string text;
-  std::istreambuf_iterator<char> at(in), end;
-  for (; at != end && text.size() <= limit; ++at) text += *at;
-  return text;
-}
 
 /// One line on a terminal that writes over itself; nothing where standard error is no terminal.
 class ProgressLine {
@@ -89,7 +73,7 @@ int render_or_throw(const RenderOptions& options, std::stop_token stop,
   api::Catalog catalog = api::load_catalog(config_file(options.config));
   catalog.any_file = true;  // the caller's own files
   const auto parsed =
-      api::parse_render_request(read_document(options.request, catalog.limits.body_bytes), catalog);
+      api::parse_render_request(read_input(options.request, catalog.limits.body_bytes), catalog);
   if (const auto* problem = std::get_if<api::Problem>(&parsed)) throw refusal_of(*problem);
   const auto& request = std::get<api::RenderRequest>(parsed);
   const ColorConfig colors(catalog.display_config);
@@ -146,6 +130,9 @@ int run_render(const RenderOptions& options) {
   } catch (const Refusal& refusal) {
     std::cerr << refusal.message;
     return refusal.status;
+  } catch (const InputError& error) {
+    std::cerr << error.what() << '\n';
+    return exit_bad_request;
   } catch (const SceneError& error) {
     std::cerr << error.what() << '\n';
     return exit_bad_request;

@@ -27,8 +27,5 @@ struct Endpoints {
 HttpResponse respond(Endpoints& endpoints, const HttpRequest& request);
 
 HttpResponse problem_response(const api::Problem& problem);
-/// For what the problem table has no word for, because HTTP itself does (RFC 9457, about:blank).
-HttpResponse plain_problem_response(int status, const std::string& title,
-                                    const std::string& detail);
 
 }  // namespace translucube::server

@@ -31,8 +31,8 @@ HttpResponse body_response(const HttpRequest& request, const ImageFile& image) {
   const std::string of_size = '/' + std::to_string(size);
 
   if (std::holds_alternative<UnsatisfiableRange>(range)) {
-    HttpResponse response = plain_problem_response(416, "Range Not Satisfiable",
-                                                   "The image ends before the range begins.");
+    HttpResponse response = problem_response(
+        {api::ProblemCode::range_not_satisfiable, "The image ends before the range begins.", {}});
     response.headers.emplace_back("Content-Range", "bytes *" + of_size);
     return response;
   }

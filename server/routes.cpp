@@ -178,9 +178,8 @@ struct HttpServer::Impl {
     const bool takes_body = request.method == "POST" || request.method == "PUT" ||
                             request.method == "PATCH" || request.method == "DELETE";
     if (announced.kind == BodyAnnouncement::Kind::malformed || !takes_body) {
-      send(plain_problem_response(
-               400, "Bad Request",
-               takes_body ? "The length of the body is not clear." : "This method takes no body."),
+      send(malformed(takes_body ? "The length of the body is not clear."
+                                : "This method takes no body."),
            response, true);
       return Handled::Handled;
     }
@@ -201,8 +200,7 @@ struct HttpServer::Impl {
     if (upload.too_large)
       send(too_large(), response, !upload.whole);
     else if (!upload.whole)
-      send(plain_problem_response(400, "Bad Request", "The body did not arrive whole."), response,
-           true);
+      send(malformed("The body did not arrive whole."), response, true);
     else if (encoded)
       send(problem_response({api::ProblemCode::unsupported_media_type,
                              "A body in a content coding is not taken.",
@@ -210,6 +208,10 @@ struct HttpServer::Impl {
            response);
     else
       answer(request, response, std::move(upload.body));
+  }
+
+  static HttpResponse malformed(const char* detail) {
+    return problem_response({api::ProblemCode::malformed_http, detail, {}});
   }
 
   HttpResponse too_large() const {
@@ -236,7 +238,8 @@ struct HttpServer::Impl {
         send(too_large(), response, true);
         break;
       case 414:
-        send(plain_problem_response(414, "URI Too Long", "The URI is too long."), response, true);
+        send(problem_response({api::ProblemCode::uri_too_long, "The URI is too long.", {}}),
+             response, true);
         break;
       case 500:
         send(problem_response(
@@ -244,8 +247,7 @@ struct HttpServer::Impl {
              response, true);
         break;
       default:
-        send(plain_problem_response(400, "Bad Request", "This is not an HTTP request."), response,
-             true);
+        send(malformed("This is not an HTTP request."), response, true);
     }
     return Handled::Handled;
   }

@@ -12,7 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array all_codes{ProblemCode::malformed_json,
+constexpr std::array all_codes{ProblemCode::malformed_http,
+                               ProblemCode::malformed_json,
                                ProblemCode::invalid_request,
                                ProblemCode::idempotency_mismatch,
                                ProblemCode::not_found,
@@ -21,7 +22,9 @@ constexpr std::array all_codes{ProblemCode::malformed_json,
                                ProblemCode::conflict,
                                ProblemCode::not_ready,
                                ProblemCode::payload_too_large,
+                               ProblemCode::uri_too_long,
                                ProblemCode::unsupported_media_type,
+                               ProblemCode::range_not_satisfiable,
                                ProblemCode::overloaded,
                                ProblemCode::storage_failure,
                                ProblemCode::internal};
@@ -36,6 +39,7 @@ TEST(Problem, CodesHaveTheirOwnStableType) {
 }
 
 TEST(Problem, CodesHaveTheStatusOfTheContract) {
+  EXPECT_EQ(kind(ProblemCode::malformed_http).status, 400);
   EXPECT_EQ(kind(ProblemCode::malformed_json).status, 400);
   EXPECT_EQ(kind(ProblemCode::not_found).status, 404);
   EXPECT_EQ(kind(ProblemCode::method_not_allowed).status, 405);
@@ -43,7 +47,9 @@ TEST(Problem, CodesHaveTheStatusOfTheContract) {
   EXPECT_EQ(kind(ProblemCode::conflict).status, 409);
   EXPECT_EQ(kind(ProblemCode::not_ready).status, 409);
   EXPECT_EQ(kind(ProblemCode::payload_too_large).status, 413);
+  EXPECT_EQ(kind(ProblemCode::uri_too_long).status, 414);
   EXPECT_EQ(kind(ProblemCode::unsupported_media_type).status, 415);
+  EXPECT_EQ(kind(ProblemCode::range_not_satisfiable).status, 416);
   EXPECT_EQ(kind(ProblemCode::invalid_request).status, 422);
   EXPECT_EQ(kind(ProblemCode::idempotency_mismatch).status, 422);
   EXPECT_EQ(kind(ProblemCode::internal).status, 500);

@@ -71,6 +71,7 @@ TEST(RoutesTest, ARenderGoesInAndItsPictureComesOut) {
   EXPECT_EQ(part->body, exr->body.substr(100, 100));
   const auto none = served.client.Get(location + "/image", {{"Range", "bytes=9999999-"}});
   EXPECT_EQ(none->status, 416);
+  EXPECT_EQ(type_of(none), "range-not-satisfiable");
   // A status is no picture: ranges are not for it.
   EXPECT_EQ(served.client.Get(location, {{"Range", "bytes=0-3"}})->status, 200);
 
@@ -193,24 +194,27 @@ TEST(RoutesTest, APostOrDeleteWithoutABodyIsNotWaitedFor) {
 TEST(RoutesTest, WhatIsNotHttpIsAProblemAndTheConnectionEnds) {
   Served served;
   const std::string post = "POST /v1/renders HTTP/1.1\r\nHost: x\r\n";
-  const std::vector<std::string> requests{
-      "nonsense\r\n\r\n",
-      "BREW /pot HTTP/1.1\r\nHost: x\r\n\r\n",
-      "GET / HTTP/9.9\r\nHost: x\r\n\r\n",
-      "GET /livez HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\nhello",
-      post + "Content-Length: -1\r\n\r\n",
-      post + "Content-Length: 5\r\nContent-Length: 6\r\n\r\nhello",
-      post + "Content-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
-      post + "Transfer-Encoding: chunked\r\n\r\nZZ\r\nhello\r\n0\r\n\r\n",
-      post + "Content-Length: 18446744073709551615\r\n\r\n",
-      "GET /" + std::string(10'000, 'a') + " HTTP/1.1\r\nHost: x\r\n\r\n",
+  const std::string malformed = "malformed-http";
+  const std::vector<std::pair<std::string, std::string>> requests{
+      {"nonsense\r\n\r\n", malformed},
+      {"BREW /pot HTTP/1.1\r\nHost: x\r\n\r\n", malformed},
+      {"GET / HTTP/9.9\r\nHost: x\r\n\r\n", malformed},
+      {"GET /livez HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\nhello", malformed},
+      {post + "Content-Length: -1\r\n\r\n", malformed},
+      {post + "Content-Length: 5\r\nContent-Length: 6\r\n\r\nhello", malformed},
+      {post + "Content-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n", malformed},
+      {post + "Transfer-Encoding: chunked\r\n\r\nZZ\r\nhello\r\n0\r\n\r\n", malformed},
+      {post + "Content-Length: 18446744073709551615\r\n\r\n", "payload-too-large"},
+      {"GET /" + std::string(10'000, 'a') + " HTTP/1.1\r\nHost: x\r\n\r\n", "uri-too-long"},
   };
-  for (const std::string& request : requests) {
+  for (const auto& [request, type] : requests) {
     Wire wire(served.server.port());
     wire.send(request);
     const std::string answer = wire.receive();
     EXPECT_THAT(answer, StartsWith("HTTP/1.1 4")) << request.substr(0, 100);
     EXPECT_THAT(answer, HasSubstr("application/problem+json")) << request.substr(0, 100);
+    EXPECT_THAT(answer, HasSubstr("\"urn:translucube:problem:" + type + '"'))
+        << request.substr(0, 100);
     EXPECT_TRUE(wire.closed()) << request.substr(0, 100);
   }
   EXPECT_EQ(served.client.Get("/livez")->status, 200);

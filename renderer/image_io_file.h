@@ -1,0 +1,30 @@
+#pragma once
+
+// Image files as OpenImageIO 2.4 opens and writes them, for image_io*.cpp alone: no other file may
+// include it.
+
+#include <OpenImageIO/imageio.h>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "renderer/image_io.h"
+
+namespace translucube {
+
+inline constexpr std::int64_t max_pixels = std::int64_t{1} << 28;
+
+[[noreturn]] void fail_image(const std::filesystem::path& file, const std::string& why);
+
+/// Throws ImageError.
+std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file);
+
+/// Writes a file with `write`, which gets the open output and returns false where it fails. Throws
+/// ImageError.
+void write_image_file(const std::filesystem::path& file, ImageFormat format,
+                      const OIIO::ImageSpec& spec,
+                      const std::function<bool(OIIO::ImageOutput&)>& write);
+
+}  // namespace translucube
