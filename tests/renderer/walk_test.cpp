@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "renderer/lambertian.h"
+#include "tests/support/truths.h"
 
 namespace translucube::test {
 namespace {
@@ -105,57 +106,14 @@ TEST(LargeSteps, FitIntoTheBody) {
   EXPECT_EQ(ball_level(std::nan("")), -1);
 }
 
-/// Mean length inside a unit sphere of index 1 for diffuse light: 4/3 (Blanco and Fournier 2003).
-/// Nearly all light turns back near the surface and nearly all length is travelled deep inside, so
-/// particles are split as they go down and played out as they come up (weight window).
-struct MeanLength {
-  double mean, standard_error, collisions;
-};
-MeanLength mean_length(const Medium& medium, int walks, std::uint64_t key) {
-  double sum = 0, squares = 0, collisions = 0;
-  struct Weighted : Particle {
-    double weight = 1;
-  };
-  for (int i = 0; i < walks; ++i) {
-    Rng rng(hash_combine(key, i));
-    const Vec3 down = InterfacedLambertian::sample(rng.uniform2());
-    std::vector<Weighted> stack{{{{0, 0, 1}, -down, 0}, 1}};
-    double total = 0;
-    while (!stack.empty()) {
-      Weighted particle = stack.back();
-      stack.pop_back();
-      while (true) {
-        Hit hit;
-        const double before = particle.length;
-        if (!fly(Sphere{}, medium, particle, rng, hit)) {
-          total += particle.weight * hit.t;
-          break;
-        }
-        scatter(Sphere{}, medium, particle, rng);
-        ++collisions;
-        total += particle.weight * (particle.length - before);
-        const double depth =
-            0.5 * (1 - length_squared(particle.p)) * medium.sigma_s * (1 - medium.g);
-        const double wanted = std::min(1.0, 1 / depth);
-        if (particle.weight > 2 * wanted) {
-          particle.weight /= 2;
-          stack.push_back(particle);
-        } else if (particle.weight < wanted / 2) {
-          if (rng.uniform() < 0.5) break;
-          particle.weight *= 2;
-        }
-      }
-    }
-    sum += total;
-    squares += total * total;
-  }
-  const double mean = sum / walks;
-  return {mean, std::sqrt((squares / walks - mean * mean) / walks), collisions / walks};
+/// 4/3 in a unit sphere of index 1 (Blanco and Fournier 2003).
+WalkLength mean_length(const Medium& medium, int walks, std::uint64_t key) {
+  return SphereWalk{medium}.length(walks, key);
 }
 
 TEST(MeanPathLength, StaysExactUpToAMillionMeanFreePaths) {
   for (const double sigma_s : {1.0, 1e2, 1e4, 1e6}) {
-    const MeanLength m = mean_length({sigma_s, 0}, 300'000, 3);
+    const WalkLength m = mean_length({sigma_s, 0}, 300'000, 3);
     const double error = m.standard_error / (4.0 / 3);
     EXPECT_NEAR(m.mean / (4.0 / 3), 1, 3.5 * error) << sigma_s;
     EXPECT_LT(error, 1e-2) << sigma_s << ", collisions " << m.collisions;
@@ -164,14 +122,14 @@ TEST(MeanPathLength, StaysExactUpToAMillionMeanFreePaths) {
 
 TEST(LongMeanPathLength, StaysExactToHalfAPercentUpToAMillionMeanFreePaths) {
   for (const double sigma_s : {1e4, 1e6}) {
-    const MeanLength m = mean_length({sigma_s, 0}, 8'000'000, 9);
+    const WalkLength m = mean_length({sigma_s, 0}, 8'000'000, 9);
     EXPECT_NEAR(m.mean / (4.0 / 3), 1, 5e-3) << sigma_s;
     EXPECT_LT(m.standard_error / (4.0 / 3), 1.8e-3) << sigma_s;
   }
 }
 
 TEST(MeanPathLength, OfTheAnalogWalkInAForwardScatteringMediumIsTheSame) {
-  const MeanLength m = mean_length({200, 0.9}, 60'000, 4);
+  const WalkLength m = mean_length({200, 0.9}, 60'000, 4);
   EXPECT_NEAR(m.mean / (4.0 / 3), 1, 4 * m.standard_error / (4.0 / 3));
   EXPECT_LT(m.standard_error / (4.0 / 3), 1e-2);
 }

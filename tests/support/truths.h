@@ -57,6 +57,10 @@ inline LitSlab lit_slab(const Material& m, float sigma_a, std::uint32_t samples,
   return optics;
 }
 
+struct WalkLength : Estimate {
+  double collisions = 0;  ///< of a walk, with all that it is split into
+};
+
 /// A walk of diffuse light in a unit sphere, apart from the transport: one particle at a time from
 /// the north pole, which stands for every point of the surface.
 struct SphereWalk {
@@ -74,7 +78,7 @@ struct SphereWalk {
   /// Mean length inside. Nearly all light turns back near the surface and nearly all length is
   /// travelled deep inside, so particles are split as they go down and played out as they come up
   /// (weight window).
-  Estimate length(int walks, std::uint64_t key) const;
+  WalkLength length(int walks, std::uint64_t key) const;
 
  private:
   struct Entered {
@@ -130,12 +134,12 @@ inline Estimate SphereWalk::leaving(int walks, std::uint64_t key) const {
   return estimate_of(sum, squares, walks);
 }
 
-inline Estimate SphereWalk::length(int walks, std::uint64_t key) const {
+inline WalkLength SphereWalk::length(int walks, std::uint64_t key) const {
   struct Weighted : Particle {
     double weight = 1;
   };
   std::vector<Weighted> stack;
-  double sum = 0, squares = 0;
+  double sum = 0, squares = 0, collisions = 0;
   for (int i = 0; i < walks; ++i) {
     Rng rng(hash_combine(key, i));
     const auto [entered, share] = enter(rng);
@@ -154,6 +158,7 @@ inline Estimate SphereWalk::length(int walks, std::uint64_t key) const {
           continue;
         }
         scatter(Sphere{}, medium, particle, rng);
+        ++collisions;
         total += particle.weight * (particle.length - before);
         const double depth =
             0.5 * (1 - length_squared(particle.p)) * medium.sigma_s * (1 - medium.g);
@@ -170,7 +175,7 @@ inline Estimate SphereWalk::length(int walks, std::uint64_t key) const {
     sum += total;
     squares += total * total;
   }
-  return estimate_of(sum, squares, walks);
+  return {estimate_of(sum, squares, walks), collisions / walks};
 }
 
 }  // namespace translucube::test

@@ -42,7 +42,7 @@ Table dipole(Run& run) {
         spec.camera.vfov_deg = 16;  // the body over the whole image
         spec.width = spec.height = 48;
       }
-      return render(*build_scene(spec), SampleTarget{run.samples(256)}, run.threads());
+      return render(*build_scene(spec), SampleTarget{run.samples(160)}, run.threads());
     };
     const RenderResult model = rendered(true, false), exact = rendered(false, false),
                        furnace = rendered(true, true);

@@ -10,7 +10,7 @@ namespace {
 
 /// Two digits of the error, and as many decimals of the value.
 std::string with_error(const Estimate& e) {
-  if (e.standard_error == 0) return text("%.6g", e.mean);
+  if (e.standard_error <= rounding * std::fabs(e.mean)) return text("%.6g", e.mean);
   const int decimals =
       std::clamp(1 - static_cast<int>(std::floor(std::log10(e.standard_error))), 0, 7);
   return text("%.*f ± %.*f", decimals, e.mean, decimals, e.standard_error);

@@ -42,7 +42,7 @@ Table image_means(Run& run) {
     SceneSpec spec = peer_scene(peer.coefficients, 128, run.next_seed());
     spec.material.multiple_scattering = false;
     const auto means = channel_means(
-        render(*build_scene(spec), SampleTarget{run.samples(512)}, run.threads()).film);
+        render(*build_scene(spec), SampleTarget{run.samples(256)}, run.threads()).film);
     for (int c = 0; c < 3; ++c)
       table.add(
           text("%s (%g, %g, %g), %s", peer.name, peer.coefficients.alpha, peer.coefficients.sigma_s,

@@ -46,14 +46,14 @@ Table mean_path_lengths(Run& run) {
                        Truth{1, 0, 0, source});
     for (const double sigma_s : {0.1, 1.0, 10.0, 100.0})
       table.add_column(text("sigma_s R %g", sigma_s), column,
-                       relative(mean_path_of(Sphere{}, material(ior, 0, sigma_s), run.samples(384),
+                       relative(mean_path_of(Sphere{}, material(ior, 0, sigma_s), run.samples(256),
                                              run.next_seed(), run.threads()),
                                 scattering),
                        Truth{1, 0, 0, source});
     for (const double sigma_s : {1e3, 1e4, 1e5, 1e6})
       table.add_column(
           text("sigma_s R %g", sigma_s), column,
-          relative(SphereWalk{{sigma_s, 0}, ior}.length(run.walks(600'000), run.next_seed()),
+          relative(SphereWalk{{sigma_s, 0}, ior}.length(run.walks(250'000), run.next_seed()),
                    scattering),
           Truth{1, 0, 0, source});
   }
