@@ -178,12 +178,12 @@ std::vector<Absorption> five_absorbers() {
 
 /// Over the five absorbers.
 SpreadError film_error(const SceneSpec& spec, std::uint32_t samples) {
-  const std::vector<SpreadError> errors =
+  const std::vector<test::ExplorableError> errors =
       test::explorable_errors(spec, five_absorbers(), 37 / reference_mm, samples, 1);
   SpreadError worst;
-  for (const SpreadError& error : errors) {
-    worst.largest = std::max(worst.largest, error.largest);
-    worst.mean += error.mean / static_cast<double>(errors.size());
+  for (const test::ExplorableError& error : errors) {
+    worst.largest = std::max(worst.largest, error.film.largest);
+    worst.mean += error.film.mean / static_cast<double>(errors.size());
   }
   return worst;
 }

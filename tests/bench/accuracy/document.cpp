@@ -10,7 +10,8 @@ namespace {
 
 /// Two digits of the error, and as many decimals of the value.
 std::string with_error(const Estimate& e) {
-  if (e.standard_error <= rounding * std::fabs(e.mean)) return text("%.6g", e.mean);
+  if (e.standard_error <= rounding * std::fabs(e.mean))
+    return text(std::fabs(e.mean) < 0.01 ? "%.2g" : "%.6g", e.mean);
   const int decimals =
       std::clamp(1 - static_cast<int>(std::floor(std::log10(e.standard_error))), 0, 7);
   return text("%.*f ± %.*f", decimals, e.mean, decimals, e.standard_error);
@@ -111,12 +112,15 @@ std::string markdown(const Report& report) {
     for (const Plot& plot : table.plots)
       out += "\n![" + plot.caption + "](plots/" + plot.name + ".svg)\n";
   }
-  out +=
-      "\n## Times\n\nThese depend on the machine and on what else it does: read their ratios. CPU "
-      "nanoseconds per camera sample.\n";
+  std::string times;
   for (const Table& table : report.tables)
     if (std::ranges::count(table.figures, true, &Figure::soft))
-      out += "\n" + table.title + "\n\n" + columns(table, true);
+      times += "\n" + table.title + ":\n\n" + columns(table, true);
+  if (!times.empty())
+    out +=
+        "\n## Times\n\nThese depend on the machine and on what else it does: read their ratios. "
+        "CPU nanoseconds per camera sample.\n" +
+        times;
   return out;
 }
 

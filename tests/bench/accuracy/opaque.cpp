@@ -88,7 +88,7 @@ Table interfaced_lambertian(Run& run) {
               "below, it is a half space of isotropic scatterers, whose light follows "
               "Chandrasekhar's H function and not Lambert's law. Both keep all energy, but the "
               "picture steps at s = 1: mean radiance over a sphere lit by the half of the sky "
-              "behind the camera, or from within 30 degrees of it, where the step is largest. "
+              "behind the camera, or from within 30 degrees of it; the ratio is the step. "
               "Without an interface (ior 1) both have exact values.",
               Table::Layout::columns};
   const ChandrasekharH h;
@@ -111,7 +111,7 @@ Table interfaced_lambertian(Run& run) {
         Scene scene = body(Sphere{}, material(ior, alpha, sigma_s), run.next_seed());
         scene.environment = cone == 0 ? half_space_light(true) : cone_light(cone);
         look_from_afar(scene, 1.0, 64);
-        return over_the_disc(image_mean(trace(scene, run.samples(256), run.threads())), 0);
+        return over_the_disc(image_mean(trace(scene, run.samples(192), run.threads())), 0);
       };
       const Estimate dense = look(1e5), opaque = look(std::numeric_limits<double>::infinity());
       std::optional<Truth> dense_truth, opaque_truth;

@@ -45,7 +45,7 @@ std::string lengths(const Table& table) {
         indices[i]);
   }
   return script +
-         "set logscale x\nset format x '10^{%L}'\nset xlabel 'scattering sigma_s R'\n"
+         "set logscale x\nset format x '10^{%L}'\nset xlabel 'scattering sigma\\_s R'\n"
          "set ylabel 'mean path length off by [%]'\n" +
          plot;
 }
@@ -54,7 +54,6 @@ std::string microfacets(const Table& table) {
   return data(table, "many", "multiple scattering", "alpha") +
          data(table, "once", "single scattering", "alpha") +
          "set xlabel 'roughness alpha'\nset ylabel 'share of the light kept'\nset yrange [0:1.1]\n"
-         "set key bottom left\n"
          "plot $many using 1:2:3 with yerrorlines pt 7 ps .6 lc '#0072B2' title 'multiple "
          "scattering', "
          "$once using 1:2:3 with yerrorlines pt 7 ps .6 lc '#D55E00' title 'single scattering', "
@@ -63,20 +62,25 @@ std::string microfacets(const Table& table) {
 }
 
 std::string explorable(const Table& table) {
-  return data(table, "worst", "largest error", "absorption") +
-         data(table, "mean", "mean error", "absorption") +
+  return data(table, "largest", "largest", "absorption") +
+         data(table, "mean", "mean", "absorption") +
+         data(table, "largest_bins", "largest, bins alone", "absorption") +
+         data(table, "mean_bins", "mean, bins alone", "absorption") +
          "set logscale y\nset format y '10^{%L}'\nset xlabel 'absorption a'\n"
-         "set ylabel 'error, of the clear pixel'\nset yrange [1e-7:3e-3]\nset key bottom left\n"
+         "set ylabel 'error, of the clear pixel'\nset yrange [1e-7:2e-3]\n"
          "plot 1e-3 lc '#888888' dt 2 title 'bound', "
-         "$worst using 1:2 with linespoints pt 7 ps .6 lc '#D55E00' title 'largest', "
-         "$mean using 1:2 with linespoints pt 7 ps .6 lc '#0072B2' title 'mean'";
+         "$largest using 1:2 with linespoints pt 7 ps .6 lc '#D55E00' title 'largest', "
+         "$mean using 1:2 with linespoints pt 7 ps .6 lc '#0072B2' title 'mean', "
+         "$largest_bins using 1:2 with linespoints dt 2 pt 6 ps .6 lc '#D55E00' title 'bins "
+         "alone', "
+         "$mean_bins using 1:2 with linespoints dt 2 pt 6 ps .6 lc '#0072B2' title 'bins alone'";
 }
 
 std::string dipole(const Table& table) {
   return data(table, "furnace", "white furnace", "s ") + data(table, "light", "luminance", "s ") +
          data(table, "error", "relMSE", "s ") +
          "set xlabel 'scattering s'\nset ylabel 'relative to exact'\nset y2label 'relMSE'\n"
-         "set y2tics\nset ytics nomirror\nset y2range [0:*]\nset key bottom right\n"
+         "set border 11\nset y2tics\nset y2range [0:*]\n"
          "plot 1 lc '#888888' notitle, "
          "$furnace using 1:2:3 with yerrorlines pt 7 ps .6 lc '#0072B2' title 'white furnace', "
          "$light using 1:2:3 with yerrorlines pt 7 ps .6 lc '#009E73' title 'luminance over "
@@ -91,7 +95,8 @@ void draw(const std::string& script, const std::filesystem::path& file) {
       "set terminal svg size 720,400 font 'sans-serif,13' background rgb 'white'\n"
       "set output '" +
       file.string() +
-      "'\nset border 3 lc '#444444'\nset tics nomirror\n"
+      "'\nset border 3 lc '#444444'\nset key outside bottom center horizontal\nset bmargin 6\nset "
+      "tics nomirror\n"
       "set grid lc '#dddddd'\n" +
       script + "\n";
   if (!pipe || std::fputs(all.c_str(), pipe.get()) < 0 || std::fflush(pipe.get()) != 0)

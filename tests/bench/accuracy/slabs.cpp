@@ -77,10 +77,10 @@ Table slab_appearances(Run& run) {
   const auto transmitted = [](const SlabAppearance::AtIncidence& at) {
     return Estimate{at.value.transmitted.total[1], at.standard_error.transmitted.total[1]};
   };
-  const SlabAppearance thin = measure(1, 90, 10, 0.75, 0.02, 7e-5);
+  const SlabAppearance thin = measure(1, 90, 10, 0.75, 0.02, 1.5e-4);
   table.add(std::string("R, ") + matched, reflected(thin.normal), van_de_hulst_r);
   table.add(std::string("T, ") + matched, transmitted(thin.normal), van_de_hulst_t);
-  table.add(std::string("R, ") + half_space, reflected(measure(1.5, 90, 10, 0, 1, 1e-4).normal),
+  table.add(std::string("R, ") + half_space, reflected(measure(1.5, 90, 10, 0, 1, 2e-4).normal),
             giovanelli);
   const SlabAppearance clear = measure(1.5, 0, 0.5, 0, 1, 1e-3);
   const Faces faces = clear_slab(f_normal, 0.5);
@@ -91,7 +91,7 @@ Table slab_appearances(Run& run) {
   // Thick, white, of matched index, in diffuse light.
   constexpr double tau = 100, milne = 0.710446;
   table.add("T of diffuse light, matched index, sigma_s d 100",
-            transmitted(measure(1, tau, 0, 0, 1, 1e-4).diffuse),
+            transmitted(measure(1, tau, 0, 0, 1, 1.5e-4).diffuse),
             {4.0 / 3 / (tau + 2 * milne), 0, 0,
              "diffusion with Milne's extrapolation length (Hopf 1934)"});
   return table;
