@@ -52,7 +52,7 @@ Table mean_path_lengths(Run& run) {
     for (const double sigma_s : {1e3, 1e4, 1e5, 1e6})
       table.add_column(
           text("sigma_s R %g", sigma_s), column,
-          relative(SphereWalk{{sigma_s, 0}, ior}.length(run.walks(120'000), run.next_seed()),
+          relative(SphereWalk{{sigma_s, 0}, ior}.length(run.walks(200'000), run.next_seed()),
                    scattering),
           Truth{1, 0, 0, source});
   }
