@@ -23,7 +23,7 @@
 //
 // The model does not conserve energy in between: the dipole comes in full on top of what the
 // dielectric already transmits, and it takes any body for a half space. By how much is measured
-// (tests/bench/dipole.cpp, docs/accuracy.md), not corrected.
+// (docs/accuracy.md), not corrected.
 //
 // Absorption acts on R_d for each wavelength: an operator from RGB to RGB over r, as a lane's is
 // over the path length (absorption.h). Sampling never depends on the colour of the light.

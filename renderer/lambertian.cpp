@@ -40,8 +40,13 @@ double InterfacedLambertian::transmittance(double mu) const {
 }
 
 LobeValue InterfacedLambertian::evaluate(Vec3 wo, Vec3 wi) const {
+  const LobeValue out = emit(wi);
+  return {transmittance(wo.z) * out.f_cos, out.pdf};
+}
+
+LobeValue InterfacedLambertian::emit(Vec3 wi) const {
   if (wi.z <= 0) return {};
-  return {transmittance(wo.z) * transmittance(wi.z) * norm_ * wi.z, wi.z / pi};
+  return {transmittance(wi.z) * norm_ * wi.z, wi.z / pi};
 }
 
 Vec3 InterfacedLambertian::sample(Sample2 u) {

@@ -214,9 +214,12 @@ class Tracer {
   void enter_smooth(Path path) {
     const Vec3 wo = -path.d;
     const double reflectance = fresnel(dot(wo, path.n), interface_.ior);
-    if constexpr (lambertian) enter_lambertian(path);
     if constexpr (dipole) enter_dipole(path);
     if (reflectance > 0) leave(path, reflect(wo, path.n), path.weight * reflectance, 0);
+    if constexpr (lambertian) {
+      path.weight *= 1 - reflectance;
+      return_diffuse(path);
+    }
     if constexpr (open) {
       if (reflectance == 1) return;
       path.d = *refract(wo, path.n, interface_.ior);
@@ -318,13 +321,13 @@ class Tracer {
   // ---- the rough interface
 
   void enter_rough(Path path) {
-    if constexpr (lambertian) enter_lambertian(path);
     if constexpr (dipole) enter_dipole(path);
     if (!cross_rough(path, Frame(path.n), interface_.ior, true)) return;
     if constexpr (dipole) {
       if (interior_.clear_share == 0) return;  // a threshold relative to nothing ends nothing
       path.weight *= interior_.clear_share;
     }
+    if constexpr (lambertian) return_diffuse(path);
     if constexpr (open) inward(path);
   }
 
@@ -354,7 +357,7 @@ class Tracer {
           const double weight = arriving * share;
           if ((wi.z > 0) == from_outside) {
             leave(path, frame.to_world(wi), weight, pdf);
-          } else if (open) {
+          } else if (open || lambertian) {
             inward_weight += weight;
             if (rng.uniform() * inward_weight < weight) inward = wi;
           }
@@ -368,19 +371,16 @@ class Tracer {
 
   // ---- the infinitely dense body
 
-  /// What the background sends back through the interface.
-  void enter_lambertian(Path& path) {
-    const double length = path.length;
+  /// What the background below path.p sends back through the interface, all that came in.
+  void return_diffuse(Path& path) {
     path.length += shortest_length;  // it was inside
     const Frame frame(path.n);
-    const Vec3 wo = frame.to_local(-path.d);
-    const auto evaluate = [&](Vec3 wi) { return interior_.base.evaluate(wo, wi); };
-    connect(path, frame, evaluate);
+    const auto emit = [&](Vec3 wi) { return interior_.base.emit(wi); };
+    connect(path, frame, emit);
     const Vec3 wi = InterfacedLambertian::sample(path.sampler.next2());
-    const LobeValue value = evaluate(wi);
+    const LobeValue value = emit(wi);
     if (value.f_cos > 0)
       leave(path, frame.to_world(wi), path.weight * value.f_cos / value.pdf, value.pdf);
-    path.length = length;
   }
 
   // ---- the paper's model
@@ -413,13 +413,8 @@ class Tracer {
                         [&](const DipoleColor& color) { return color.at(from.r); });
     }
     collector_.note("dipole", path);
-    const Frame frame(path.n);
-    const auto evaluate = [&](Vec3 wi) { return interior_.base.evaluate({0, 0, cos_o}, wi); };
-    connect(path, frame, evaluate);
-    const Vec3 wi = InterfacedLambertian::sample(path.sampler.next2());
-    const LobeValue value = evaluate(wi);
-    if (value.f_cos > 0)
-      leave(path, frame.to_world(wi), path.weight * value.f_cos / value.pdf, value.pdf);
+    path.weight *= interior_.base.transmittance(cos_o);
+    return_diffuse(path);
     arriving.sampler = path.sampler;
   }
 

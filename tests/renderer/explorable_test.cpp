@@ -12,6 +12,7 @@
 #include "renderer/image_io.h"
 #include "renderer/material_cube.h"
 #include "tests/support/absorbers.h"
+#include "tests/support/explorable_error.h"
 #include "tests/support/scenes.h"
 
 namespace translucube {
@@ -48,32 +49,16 @@ std::vector<Absorption> five_absorbers() {
   return list;
 }
 
-/// The largest and the mean difference of an explorable film, developed for the absorbers, from
-/// exact lanes of the same paths; of the clear pixel.
-SpreadError film_error(SceneSpec spec, std::uint32_t samples) {
-  spec.more_absorptions = five_absorbers();
-  spec.material.coefficients.sigma_a_peak = 0;  // lane 0 is the clear picture
-  const auto exact_scene = build_scene(spec);
-  const Film exact = render(*exact_scene, SampleTarget{samples}, 1).film;
-  const std::vector<Absorption> absorptions = spec.more_absorptions;
-  spec.more_absorptions.clear();
-  spec.explorable = Explorable{37 / reference_mm};
-  const auto scene = build_scene(spec);
-  const ExplorableFilm film =
-      explorable_film(*scene, render(*scene, SampleTarget{samples}, 1).film);
-  const Image clear = develop(exact);
-  SpreadError error;
-  for (std::size_t k = 0; k < absorptions.size(); ++k) {
-    const Image developed =
-        develop_explorable(film, absorptions[k].absorber, absorptions[k].sigma_a_peak);
-    const Image expected = develop(exact, static_cast<int>(k) + 1);
-    for (std::size_t i = 0; i < clear.pixels.size(); ++i) {
-      const double e = std::fabs(developed.pixels[i] - expected.pixels[i]) / clear.pixels[i];
-      error.largest = std::max(error.largest, e);
-      error.mean += e / static_cast<double>(clear.pixels.size() * absorptions.size());
-    }
+/// Over the five absorbers.
+SpreadError film_error(const SceneSpec& spec, std::uint32_t samples) {
+  const std::vector<test::ExplorableError> errors =
+      test::explorable_errors(spec, five_absorbers(), 37 / reference_mm, samples, 1);
+  SpreadError worst;
+  for (const test::ExplorableError& error : errors) {
+    worst.largest = std::max(worst.largest, error.film.largest);
+    worst.mean += error.film.mean / static_cast<double>(errors.size());
   }
-  return error;
+  return worst;
 }
 
 TEST(ExplorableFilm, DevelopsLikeExactLanesOfTheSamePaths) {

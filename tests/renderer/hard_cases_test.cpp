@@ -1,6 +1,8 @@
 // Hard cases (design.md section 6): finite, unbiased, bounded in time, and nothing truncated where
 // no light is trapped. In a white furnace the right answer is 1 whatever the body.
 
+#include "tests/support/hard_cases.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -12,30 +14,11 @@
 namespace translucube::test {
 namespace {
 
-/// The request's scene under white light: a sphere of this radius that fills the image.
-SceneSpec furnace(double radius_mm, double alpha, double sigma_s, double ior, double g) {
-  SceneSpec spec;
-  spec.material.coefficients = {0, alpha, sigma_s};
-  spec.material.ior = ior;
-  spec.material.g = g;
-  spec.object = SphereObject{radius_mm};
-  spec.camera.position_mm = {0, 0, 4.5 * radius_mm};
-  spec.camera.vfov_deg = 15;
-  spec.width = spec.height = 16;
-  return spec;
-}
+class HardCases : public testing::TestWithParam<HardCase> {};
 
-struct Case {
-  const char* name;
-  double radius_mm, alpha, sigma_s, ior, g;
-  std::uint32_t samples;
-};
-
-class HardCase : public testing::TestWithParam<Case> {};
-
-TEST_P(HardCase, IsFiniteUnbiasedAndBoundedInTime) {
-  const Case& c = GetParam();
-  const auto scene = build_scene(furnace(c.radius_mm, c.alpha, c.sigma_s, c.ior, c.g));
+TEST_P(HardCases, IsFiniteUnbiasedAndBoundedInTime) {
+  const HardCase& c = GetParam();
+  const auto scene = build_scene(hard_furnace(c.radius_mm, c.alpha, c.sigma_s, c.ior, c.g));
   const auto start = std::chrono::steady_clock::now();
   const Film film = trace(*scene, c.samples);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
@@ -47,28 +30,12 @@ TEST_P(HardCase, IsFiniteUnbiasedAndBoundedInTime) {
   EXPECT_LT(took.count(), 60);
 }
 
-INSTANTIATE_TEST_SUITE_P(Furnace, HardCase,
-                         testing::Values(Case{"alpha_1e_4", 1, 1e-4, 0, 1.5, 0, 256},
-                                         Case{"alpha_1", 1, 1, 0, 1.5, 0, 256},
-                                         Case{"alpha_1_dense", 1, 1, 100, 1.5, 0, 128},
-                                         Case{"no_step_of_the_index", 1, 0.5, 10, 1, 0, 256},
-                                         Case{"index_1_0001", 1, 0, 10, 1.0001, 0, 256},
-                                         Case{"index_1_0001_rough", 1, 0.5, 10, 1.0001, 0, 256},
-                                         Case{"index_4", 1, 0.2, 10, 4, 0, 512},
-                                         Case{"thin_as_air", 1, 0, 1e-6, 1.5, 0, 64},
-                                         Case{"a_million_mean_free_paths", 1, 0, 1e6, 1.5, 0, 128},
-                                         Case{"a_million_mean_free_paths_rough", 1, 0.3, 1e6, 1.5,
-                                              0, 128},
-                                         Case{"denser_than_any_matter", 20, 0, 1e15, 1.5, 0, 64},
-                                         Case{"forward_0_99", 1, 0, 100, 1.5, 0.99, 128},
-                                         Case{"backward_0_99", 1, 0, 100, 1.5, -0.99, 64},
-                                         Case{"a_micrometre", 1e-3, 0.1, 1e4, 1.5, 0, 128},
-                                         Case{"a_kilometre", 1e6, 0.1, 1e-5, 1.5, 0, 128}),
+INSTANTIATE_TEST_SUITE_P(Furnace, HardCases, testing::ValuesIn(hard_cases),
                          [](const auto& hard) { return std::string(hard.param.name); });
 
 TEST(HardCase, ASunOf34000StaysFiniteAndItsMeanIsThatOfAnotherSeed) {
   for (const double sigma_s : {0.0, 1.0, 10.0}) {
-    SceneSpec spec = furnace(1, 0.2, sigma_s, 1.5, 0);
+    SceneSpec spec = hard_furnace(1, 0.2, sigma_s, 1.5, 0);
     spec.environment.source =
         ImageEnvironmentSpec{TRANSLUCUBE_SOURCE_DIR "/config/environments/sunrise.exr"};
     const Film first = trace(*build_scene(spec), 256);
@@ -82,7 +49,7 @@ TEST(HardCase, ASunOf34000StaysFiniteAndItsMeanIsThatOfAnotherSeed) {
 
 TEST(HardCase, GrazingViewsOfTheSilhouetteAreUnbiased) {
   for (const double alpha : {0.0, 1e-3, 0.5}) {
-    SceneSpec spec = furnace(1, alpha, 1, 1.5, 0);
+    SceneSpec spec = hard_furnace(1, alpha, 1, 1.5, 0);
     // The last hundredth of the sphere's disc.
     spec.camera.target_mm = {0.999, 0, 0};
     spec.camera.vfov_deg = 0.1;
@@ -96,7 +63,7 @@ TEST(HardCase, ACameraInsideTheBodySeesTheFurnaceToo) {
   // Basic radiance, radiance over the index squared, is 1 everywhere in a furnace, inside as
   // outside.
   for (const double alpha : {0.0, 0.3}) {
-    SceneSpec spec = furnace(1, alpha, 5, 1.5, 0);
+    SceneSpec spec = hard_furnace(1, alpha, 5, 1.5, 0);
     spec.camera.position_mm = {0.2, 0.1, 0.3};
     spec.camera.vfov_deg = 90;
     const Estimate e = image_mean(trace(*build_scene(spec), 512));
@@ -106,7 +73,7 @@ TEST(HardCase, ACameraInsideTheBodySeesTheFurnaceToo) {
 }
 
 TEST(HardCase, ACameraInsideAnOpaqueBodyIsRefused) {
-  SceneSpec spec = furnace(1, 0, std::numeric_limits<double>::infinity(), 1.5, 0);
+  SceneSpec spec = hard_furnace(1, 0, std::numeric_limits<double>::infinity(), 1.5, 0);
   spec.camera.position_mm = {0, 0, 0.5};
   EXPECT_THROW(build_scene(spec), SceneError);
 }

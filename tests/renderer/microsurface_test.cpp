@@ -7,15 +7,11 @@
 
 #include <cmath>
 
+#include "tests/support/microsurface.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {
 namespace {
-
-Vec3 from_angles(double cosine, double phi) {
-  const double sine = std::sqrt(1 - cosine * cosine);
-  return {sine * std::cos(phi), sine * std::sin(phi), cosine};
-}
 
 Scene rough_sphere(double alpha, double sigma_s, double ior, bool multiple) {
   Scene scene = body(Sphere{}, material(ior, alpha, sigma_s));
@@ -57,40 +53,13 @@ TEST(WhiteFurnace, ARoughBodyKeepsWhatSingleScatteringKeeps) {
   }
 }
 
-/// f_basic from both sides, with all orders of scattering: mean of evaluate() over walks.
-struct Value {
-  double mean = 0, standard_error = 0;
-};
-Value bsdf(const Ggx& ggx, double eta, Vec3 wo, Vec3 wi, std::uint64_t key) {
-  constexpr int walks = 40'000;
-  double sum = 0, squares = 0;
-  Rng rng(key);
-  for (int i = 0; i < walks; ++i) {
-    MicroVertex vertex(ggx, eta, wo, rng.uniform_positive());
-    double value = 0;
-    while (vertex.weight() > 0) {
-      value += vertex.weight() * vertex.evaluate(wi).f_cos / std::fabs(wi.z);
-      const MicroSample s = vertex.sample(rng.uniform2());
-      vertex.advance(s, rng.uniform_positive(), rng.uniform_positive());
-      if (vertex.weight() < 0.25) {
-        if (rng.uniform() * 0.25 >= vertex.weight()) break;
-        vertex.set_weight(0.25);
-      }
-    }
-    sum += value;
-    squares += value * value;
-  }
-  const double mean = sum / walks;
-  return {mean, std::sqrt((squares / walks - mean * mean) / walks)};
-}
-
 TEST(Microsurface, IsReciprocalInReflectionAndTransmission) {
   // f(wi -> wo) / eta_o^2 = f(wo -> wi) / eta_i^2; basic radiance divides by the light's side
   // already.
   for (const double alpha : {0.2, 0.6, 1.0})
     for (const double ior : {1.5, 1 / 1.5}) {
       const Vec3 a = from_angles(0.8, 0), b = from_angles(0.35, 2.0);
-      const Value forth = bsdf(Ggx{alpha}, ior, a, b, 1), back = bsdf(Ggx{alpha}, ior, b, a, 2);
+      const Estimate forth = bsdf(Ggx{alpha}, ior, a, b, 1), back = bsdf(Ggx{alpha}, ior, b, a, 2);
       EXPECT_NEAR(forth.mean, back.mean,
                   4.5 * std::hypot(forth.standard_error, back.standard_error))
           << "reflection, alpha " << alpha;
@@ -98,8 +67,8 @@ TEST(Microsurface, IsReciprocalInReflectionAndTransmission) {
 
       const Vec3 below = from_angles(0.5, 2.6), mirrored_a{a.x, a.y, -a.z};
       const Vec3 wi{below.x, below.y, -below.z};
-      const Value down = bsdf(Ggx{alpha}, ior, a, wi, 3);
-      const Value up = bsdf(Ggx{alpha}, 1 / ior, below, mirrored_a, 4);
+      const Estimate down = bsdf(Ggx{alpha}, ior, a, wi, 3);
+      const Estimate up = bsdf(Ggx{alpha}, 1 / ior, below, mirrored_a, 4);
       // From a's side eta_i = ior: f_basic(a, wi) / eta_i^2 = f_basic(wi, a).
       const double scale = ior * ior;
       EXPECT_NEAR(down.mean / scale, up.mean,

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <vector>
 
+#include "renderer/lambertian.h"
+#include "tests/support/truths.h"
 #include "tests/support/walks.h"
 
 namespace translucube::test {

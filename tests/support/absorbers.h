@@ -12,6 +12,7 @@ inline SpectralAbsorber narrow_band() {  // a dye: all colours between clear and
 inline SpectralAbsorber red_glass() { return {{400, 560, 620, 700}, {1, 0.8, 0.1, 0.05}}; }
 inline RgbAbsorber plain_rgb() { return {{0.15, 1, 0.5}}; }
 
+/// Of the clear pixel.
 struct SpreadError {
   double largest = 0, mean = 0;
 };

@@ -1,0 +1,120 @@
+#pragma once
+
+// What docs/accuracy.md is made of: figures, each measured with its standard error and, where the
+// truth is known, next to it; tables of them; and the statistics that judge them.
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/support/scenes.h"
+
+namespace translucube::accuracy {
+
+using test::Estimate;
+
+/// As printf.
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char line[400];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+/// A known value. `error`: its standard error, 0 where it is exact. `tolerance`: how far its source
+/// does not claim to be right, or a bound to keep; such a figure is held to it and has no z.
+struct Truth {
+  double value = 0, error = 0, tolerance = 0;
+  std::string source;
+};
+
+struct Figure {
+  std::string row, column;
+  Estimate measured;
+  std::optional<Truth> truth = {};
+  bool soft = false;  ///< a time: it depends on the machine
+};
+
+struct Plot {
+  std::string name, caption;
+};
+
+struct Table {
+  enum class Layout { list, columns };  ///< a figure to the row, or a column for each quantity
+  std::string id, title, text;
+  Layout layout = Layout::list;
+  std::vector<Figure> figures = {};
+  std::vector<Plot> plots = {};
+
+  void add(std::string row, Estimate measured, Truth truth) {
+    figures.push_back({std::move(row), "", measured, std::move(truth)});
+  }
+  void add_column(std::string row, std::string column, Estimate measured,
+                  std::optional<Truth> truth = {}) {
+    figures.push_back({std::move(row), std::move(column), measured, std::move(truth)});
+  }
+  void add_time(std::string row, std::string column, double value) {
+    figures.push_back({std::move(row), std::move(column), {value, 0}, {}, true});
+  }
+  const Figure* find(const std::string& row, const std::string& column) const;
+};
+
+struct Report {
+  std::vector<Table> tables;
+  double effort = 1, cpu_seconds = 0;
+  std::uint64_t seed = 1;
+};
+
+/// How much work a run does, and its random numbers: a fresh seed for each figure.
+class Run {
+ public:
+  Run(double effort, std::uint64_t seed, int threads)
+      : effort_(effort), seed_(seed), threads_(threads) {}
+  int threads() const { return threads_; }
+  /// Samples of a pixel, enough for four passes to tell an error by.
+  std::uint32_t samples(std::uint32_t at_full_effort) const;
+  int walks(int at_full_effort) const;
+  /// For a standard error that falls with the root of the effort.
+  double error(double at_full_effort) const { return at_full_effort / std::sqrt(effort_); }
+  std::uint64_t next_seed();
+
+ private:
+  double effort_;
+  std::uint64_t seed_, figures_ = 0;
+  int threads_;
+};
+
+/// Films are sums of single-precision floats: exact values are met to this relative error at best.
+inline constexpr double rounding = 3e-6;
+
+/// (measured - truth) over both standard errors; empty where no chance is involved, or where the
+/// truth has a tolerance.
+std::optional<double> z_of(const Figure& figure);
+
+/// |z| that the largest of so many independent ones exceeds in one run of a hundred (Sidak 1967).
+double sidak_z(int figures);
+
+/// The z of all figures at once.
+struct Verdict {
+  int figures = 0;         ///< with a z
+  int held = 0;            ///< without one: exact, or held to a tolerance
+  double threshold = 0;    ///< Sidak's
+  double largest = 0;      ///< |z|
+  double mean_square = 0;  ///< of z: about 1 where the standard errors are honest
+  std::string where;       ///< the largest
+  std::vector<std::string> disagree;
+};
+Verdict judge(const Report& report);
+
+nlohmann::json to_json(const Report& report);
+Report report_from_json(const nlohmann::json& json);
+
+/// What disagrees between two runs, each figure within both standard errors (Sidak over all); times
+/// are left out.
+std::vector<std::string> compare(const Report& fresh, const Report& committed);
+
+}  // namespace translucube::accuracy

@@ -1,0 +1,181 @@
+#pragma once
+
+// What the truths of design.md section 6 are measured by: mean path lengths, slabs lit from one
+// side, walks in a sphere.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "renderer/fresnel.h"
+#include "renderer/walk.h"
+#include "tests/support/scenes.h"
+
+namespace translucube::test {
+
+/// sigma_s of the cube's coordinate in 1 / radius of the service's default sphere (20 mm, d_ref 10
+/// mm).
+inline double sigma_s_of_cube(double s) {
+  if (s == 1) return std::numeric_limits<double>::infinity();
+  return 4.0 / 3 * s / (1 - s) * 2;
+}
+
+/// Share of the image that a unit sphere covers in look_from_afar(scene, 1, size).
+inline constexpr double disc = std::numbers::pi / 4;
+
+/// Mean over the disc of the sphere, `background` being the pixel beside it: parallel light over
+/// the disc is diffuse light over the surface.
+inline Estimate over_the_disc(const Estimate& image, double background) {
+  return {(image.mean - (1 - disc) * background) / disc, image.standard_error / disc};
+}
+
+/// Mean path inside [radii] for each ray that meets the shape, which must look like a unit sphere.
+inline Estimate mean_path_of(Shape shape, const Material& m, std::uint32_t samples,
+                             std::uint64_t seed, int threads, int size = 64) {
+  Scene scene = body(std::move(shape), m, seed);
+  scene.lanes = {LengthLane{}};
+  look_from_afar(scene, 1.0, size);
+  return over_the_disc(image_mean(trace(scene, samples, threads)), 0);
+}
+
+/// Reflectance and transmittance of a slab of thickness 1 at normal incidence.
+struct LitSlab {
+  Estimate reflectance, transmittance;
+};
+inline LitSlab lit_slab(const Material& m, float sigma_a, std::uint32_t samples, std::uint64_t seed,
+                        int threads) {
+  LitSlab optics;
+  for (const bool above : {true, false}) {
+    Scene scene = body(Slab{}, m, hash_combine(seed, above));
+    scene.environment = half_space_light(above);
+    scene.lanes = {RgbLane{{sigma_a, sigma_a, sigma_a}}};
+    look_from_afar(scene, 0.1, 64);
+    (above ? optics.reflectance : optics.transmittance) =
+        image_mean(trace(scene, samples, threads));
+  }
+  return optics;
+}
+
+struct WalkLength : Estimate {
+  double collisions = 0;  ///< of a walk, with all that it is split into
+};
+
+/// A walk of diffuse light in a unit sphere, apart from the transport: one particle at a time from
+/// the north pole, which stands for every point of the surface.
+struct SphereWalk {
+  Medium medium;
+  double ior = 1;
+  double sigma_a = 0;
+  enum class Steps {
+    large,     ///< as the transport; absorption developed from the length
+    analog,    ///< flight by flight; absorption developed from the length
+    absorbing  ///< flight by flight in sigma_s + sigma_a, weighted by the albedo at each collision
+  } steps = Steps::large;
+
+  /// Mean share of the light that leaves the sphere again, reflection at the entrance included.
+  Estimate leaving(int walks, std::uint64_t key) const;
+  /// Mean length inside. Nearly all light turns back near the surface and nearly all length is
+  /// travelled deep inside, so particles are split as they go down and played out as they come up
+  /// (weight window).
+  WalkLength length(int walks, std::uint64_t key) const;
+
+ private:
+  struct Entered {
+    Particle particle;
+    double share;  ///< of the light, that is not reflected at the entrance
+  };
+  Entered enter(Rng& rng) const {
+    const Vec3 wo = InterfacedLambertian::sample(rng.uniform2());
+    const double share = 1 - fresnel(wo.z, ior);
+    return {{{0, 0, 1}, *refract(wo, {0, 0, 1}, ior), 0}, share};
+  }
+  /// At the boundary: true if the particle leaves, else it is reflected.
+  bool leaves(const Hit& hit, Particle& particle, Rng& rng) const {
+    particle.length += hit.t;
+    particle.p = hit.p;
+    if (rng.uniform() >= fresnel(std::fabs(dot(hit.n, particle.d)), 1 / ior)) return true;
+    particle.d = reflect(-particle.d, hit.n);
+    return false;
+  }
+};
+
+inline Estimate estimate_of(double sum, double squares, int n) {
+  const double mean = sum / n;
+  return {mean, std::sqrt(std::fmax(0.0, squares / n - mean * mean) / n)};
+}
+
+inline Estimate SphereWalk::leaving(int walks, std::uint64_t key) const {
+  const bool absorbs = steps == Steps::absorbing;
+  const Medium flights{medium.sigma_s + (absorbs ? sigma_a : 0), medium.g};
+  const double albedo = medium.sigma_s / flights.sigma_s;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < walks; ++i) {
+    Rng rng(hash_combine(key, i));
+    auto [particle, share] = enter(rng);
+    double weight = 1;
+    Hit hit;
+    while (true) {
+      if (!fly(Sphere{}, flights, particle, rng, hit)) {
+        if (leaves(hit, particle, rng)) break;
+        continue;
+      }
+      if (absorbs) weight *= albedo;
+      if (steps == Steps::large)
+        scatter(Sphere{}, medium, particle, rng);
+      else
+        particle.d = medium.scatter(particle.d, rng);
+    }
+    const double left =
+        1 - share + share * (absorbs ? weight : std::exp(-sigma_a * particle.length));
+    sum += left;
+    squares += left * left;
+  }
+  return estimate_of(sum, squares, walks);
+}
+
+inline WalkLength SphereWalk::length(int walks, std::uint64_t key) const {
+  struct Weighted : Particle {
+    double weight = 1;
+  };
+  std::vector<Weighted> stack;
+  double sum = 0, squares = 0, collisions = 0;
+  for (int i = 0; i < walks; ++i) {
+    Rng rng(hash_combine(key, i));
+    const auto [entered, share] = enter(rng);
+    stack.push_back({entered, share});
+    double total = 0;
+    while (!stack.empty()) {
+      Weighted particle = stack.back();
+      stack.pop_back();
+      while (true) {
+        Hit hit;
+        const double before = particle.length;
+        if (!fly(Sphere{}, medium, particle, rng, hit)) {
+          const bool gone = leaves(hit, particle, rng);
+          total += particle.weight * (particle.length - before);
+          if (gone) break;
+          continue;
+        }
+        scatter(Sphere{}, medium, particle, rng);
+        ++collisions;
+        total += particle.weight * (particle.length - before);
+        const double depth =
+            0.5 * (1 - length_squared(particle.p)) * medium.sigma_s * (1 - medium.g);
+        const double wanted = std::fmin(1.0, 1 / depth);
+        if (particle.weight > 2 * wanted) {
+          particle.weight /= 2;
+          stack.push_back(particle);
+        } else if (particle.weight < wanted / 2) {
+          if (rng.uniform() < 0.5) break;
+          particle.weight *= 2;
+        }
+      }
+    }
+    sum += total;
+    squares += total * total;
+  }
+  return {estimate_of(sum, squares, walks), collisions / walks};
+}
+
+}  // namespace translucube::test
