@@ -1,0 +1,362 @@
+#pragma once
+
+// Light transport in the cube, backwards from the camera, in stages:
+//
+//   emit -> enter -> walk -> boundary -> connect
+//
+// Each stage is one loop over a queue of paths. What is carried is an achromatic weight and the
+// length travelled inside the body; absorption comes with the film's lanes. At a smooth boundary
+// both branches are followed; the light that no particle deflects is enumerated, not sampled, and
+// one scattered path stands for all that is deflected on the way (a reservoir of one: Chao 1982).
+// Paths of small weight are played out by Russian roulette, so that the branches in flight stay
+// bounded.
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "renderer/collector.h"
+#include "renderer/path.h"
+#include "renderer/sphere_connector.h"
+#include "renderer/trace_body.h"
+
+namespace translucube {
+
+/// Below this weight a path survives with probability weight / threshold: low where following it is
+/// cheap, high where each turn is a long walk (chosen by relMSE x CPU on the peers' materials).
+inline constexpr double roulette_of_clear = 1.0 / 64;
+/// The same for a scattered path, relative to its weight at the first scattering.
+inline constexpr double roulette_of_scattered = 1.0 / 2;
+/// The same inside a clear body under a rough interface.
+inline constexpr double roulette_of_rough = 1.0 / 8;
+/// Boundary events after which a path is given up and its weight counted as truncated energy: only
+/// light that is trapped gets there, for good (a camera inside a clear body) or, in a mesh, for
+/// nearly as long (a medium of millions of bounding radii to the mean free path).
+inline constexpr std::uint32_t clear_event_cap = 20'000, scattering_event_cap = 2'000'000;
+/// In the dipole model, times that light may come back to the body from outside, likewise.
+inline constexpr std::uint32_t dipole_arrival_cap = 16;
+
+template <class Shape, class Interface, class Interior>
+class Tracer {
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  static constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
+  static constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
+  static constexpr bool lambertian = std::is_same_v<Interior, LambertianInterior>;
+  static constexpr bool dense = std::is_same_v<Interior, DensePigmentInterior>;
+  static constexpr bool dipole = std::is_same_v<Interior, DipoleInterior>;
+  /// Whether scattering vertices may look for light through the boundary.
+  static constexpr bool connecting = smooth && scattering && std::is_same_v<Shape, Sphere>;
+  /// Whether light goes on inside the body.
+  static constexpr bool open =
+      scattering || dense || dipole || std::is_same_v<Interior, ClearInterior>;
+
+ public:
+  Tracer(const Scene& scene, const Shape& shape, const Interface& interface,
+         const Interior& interior, Tile& tile, std::uint64_t key, std::string* log)
+      : scene_(scene),
+        shape_(shape),
+        interface_(interface),
+        interior_(interior),
+        tile_(tile),
+        collector_(scene, tile, log),
+        connector_(scene, collector_, key) {}
+
+  void run(std::uint32_t pass_index, std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t s = first; s < first + count; ++s) emit(pass_index, s);
+    while (!arriving_.empty() || !walking_.empty()) {
+      enter();
+      walk();
+      boundary();
+    }
+    connector_.flush();
+  }
+
+ private:
+  // ---- stages
+
+  void emit(std::uint32_t pass_index, std::uint32_t sample) {
+    for (int y = 0; y < tile_.height; ++y)
+      for (int x = 0; x < tile_.width; ++x) {
+        const int px = tile_.x0 + x, py = tile_.y0 + y;
+        const std::uint64_t pixel_key =
+            hash_combine(hash_combine(scene_.seed, pass_index),
+                         std::uint64_t(py) * std::uint64_t(scene_.width) + std::uint64_t(px));
+        Path path;
+        path.sampler = PathSampler(pixel_key, sample);
+        path.pixel = static_cast<std::uint32_t>(y * tile_.width + x);
+        path.roulette = roulette_of_clear;
+        const Sample2 u = path.sampler.next2();
+        path.p = scene_.camera.position;
+        path.d = scene_.camera.direction(px + u.u, py + u.v);
+        collector_.note("emit", path);
+        ++tile_.counters.camera_samples;
+        if (!scene_.camera_inside) {
+          arriving_.push_back(path);
+        } else if constexpr (open) {
+          inward(path);
+        }
+      }
+  }
+
+  /// Rays outside: to the environment, or through the interface into the body.
+  void enter() {
+    for (std::size_t i = 0; i < arriving_.size(); ++i) {
+      Path path = arriving_[i];
+      Hit hit;
+      if (!shape_.enter(path.p, path.d, hit)) {
+        escape(path);
+        continue;
+      }
+      path.p = hit.p;
+      path.n = hit.n;
+      collector_.note("enter", path);
+      if (!count_event(path)) continue;
+      if constexpr (smooth)
+        enter_smooth(path);
+      else
+        enter_rough(path);
+    }
+    arriving_.clear();
+  }
+
+  /// Flights inside until the boundary.
+  void walk() {
+    if constexpr (open) {
+      for (Path& path : walking_) {
+        Hit hit;
+        if (!cross_body(path, hit)) {
+          collector_.give_up(path);
+          continue;
+        }
+        arrive_inside(path, hit);
+        leaving_.push_back(path);
+      }
+    }
+    walking_.clear();
+  }
+
+  /// To the boundary; false for a path that lost its way.
+  bool cross_body(Path& path, Hit& hit) {
+    if constexpr (scattering) {
+      return walk_to_boundary(shape_, interior_.medium, path, path.sampler.rng(), hit,
+                              [&](auto&& place) { scatter_at(place, path); });
+    } else if constexpr (dense) {
+      // In the half space below the point where it entered, to leave at that very point.
+      const Frame frame(path.n);
+      Particle below{{}, frame.to_local(path.d), path.length};
+      walk_to_boundary(
+          HalfSpace{}, interior_.medium, below, path.sampler.rng(), hit,
+          [&](auto&& place) { scatter(place, interior_.medium, below, path.sampler.rng()); });
+      path.d = frame.to_world(below.d);
+      path.length = below.length;
+      hit.p = path.p;
+      hit.n = path.n;
+      return true;
+    } else {
+      return shape_.exit(path.p, path.d, infinity, hit);
+    }
+  }
+
+  /// `collide(surroundings)` gives the particle its new direction.
+  template <class Place, class Collide>
+  bool walk_to_boundary(const Place& body, const Medium& medium, Particle& particle, Rng& rng,
+                        Hit& hit, Collide&& collide) {
+    auto&& place = surroundings(body, medium);
+    ++tile_.counters.flights;
+    while (fly(place, medium, particle, rng, hit)) {
+      ++tile_.counters.flights;
+      if (strayed(particle)) return false;
+      collide(place);
+    }
+    return true;
+  }
+
+  /// A collision, which looks for light where that may be found.
+  template <class Place>
+  void scatter_at(Place&& place, Path& path) {
+    const Medium& medium = interior_.medium;
+    Rng& rng = path.sampler.rng();
+    if constexpr (connecting) {
+      path.phase = 0;
+      if (large_step(place, medium, path, rng, connector_.margin())) return;
+      const Vec3 before = path.d;
+      if (connector_.active()) connector_.connect(path);
+      path.d = medium.scatter(before, rng);
+      if (connector_.active()) {
+        path.vertex = path.p;
+        path.phase = medium.phase(dot(before, path.d));
+      }
+    } else {
+      scatter(place, medium, path, rng);
+    }
+  }
+
+  /// Paths inside at the boundary: what leaves is collected with its weight, what stays walks on.
+  void boundary() {
+    if constexpr (open) {
+      for (Path& path : leaving_) {
+        if (!count_event(path)) continue;
+        if constexpr (smooth)
+          leave_smooth(path);
+        else
+          leave_rough(path);
+        if (path.survives()) walking_.push_back(path);
+      }
+    }
+    leaving_.clear();
+  }
+
+  // ---- the smooth interface (tracer_smooth.h)
+
+  void enter_smooth(Path path);
+  /// The light that crosses the body unscattered, all of it; what is scattered on the way goes to
+  /// walk() as one path.
+  void follow_unscattered(Path path);
+  /// Whether all light is reflected here, and again at every other place until it is scattered.
+  bool traps(const Path& path) const;
+  /// From total reflection to the next collision, over all reflections between.
+  void roll(Path& path);
+  /// At the boundary from inside: sends out the transmitted share, keeps the reflected one.
+  void leave_smooth(Path& path);
+
+  // ---- the rough interface (tracer_rough.h)
+
+  void enter_rough(Path path);
+  void leave_rough(Path& path);
+  /// From microfacet to microfacet: what escapes outwards is sent out, and one of the rays that
+  /// escape into the body stands for all of them (a reservoir of one) and becomes `path`; false if
+  /// there is none.
+  bool cross_rough(Path& path, const Frame& frame, double eta, bool from_outside);
+
+  // ---- light that leaves in all directions (tracer_diffuse.h)
+
+  /// What the background below path.p sends back through the interface, all that came in.
+  void return_diffuse(Path& path);
+  /// What the body sends out at a point, of light that went in there or elsewhere: one sample for
+  /// plastic's diffuse half and the dipole together (dipole.h).
+  void enter_dipole(Path& arriving);
+
+  // ---- between stages
+
+  /// Next-event estimation at a rough exit: a direction of the environment, weighted by the balance
+  /// heuristic (Veach 1995) against those that the interface samples itself.
+  template <class Evaluate>
+  void connect(Path& path, const Frame& frame, Evaluate&& evaluate) {
+    const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
+    if (environment == nullptr) return;  // the same from everywhere: nothing to look for
+    const EnvironmentSample light = environment->sample(path.sampler.next2());
+    ++tile_.counters.connections;
+    const LobeValue value = evaluate(frame.to_local(light.direction));
+    if (value.f_cos <= 0) return;
+    if constexpr (!Shape::convex) {
+      Hit hit;
+      if (shape_.enter(path.p, light.direction, hit)) return;
+    }
+    collector_.note("connect", path);
+    collector_.collect(path, light.value.radiance,
+                       path.weight * value.f_cos / (light.value.pdf + value.pdf));
+  }
+
+  /// Into the body.
+  void inward(Path& path) {
+    if (!path.survives()) return;
+    if constexpr (smooth && !dense) {
+      follow_unscattered(path);
+    } else {
+      path.roulette =
+          (scattering || dense ? roulette_of_scattered : roulette_of_rough) * path.weight;
+      walking_.push_back(path);
+    }
+  }
+
+  /// Out of the body: to the environment, or where the body may be hit again, back to enter().
+  void leave(Path& from, Vec3 direction, double weight, double pdf) {
+    Path path = from;
+    path.d = direction;
+    path.weight = weight;
+    path.pdf = pdf;
+    if constexpr (Shape::convex) {
+      escape(path);
+    } else {
+      path.sampler = from.sampler.split();
+      // A model that gains energy has no answer in deep cavities: the branches must not multiply.
+      if constexpr (dipole) {
+        if (++path.arrivals > 2) path.roulette = 1;
+        if (path.arrivals > dipole_arrival_cap) return collector_.give_up(path);
+      }
+      if (path.survives()) arriving_.push_back(path);
+    }
+  }
+
+  void escape(const Path& path) {
+    collector_.note("escape", path);
+    if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
+      return collector_.collect(path, uniform->radiance, path.weight);
+    const auto& environment = std::get<ImageEnvironment>(scene_.environment);
+    if (path.pdf == 0)
+      return collector_.collect(path, environment.radiance_from(path.d), path.weight);
+    const EnvironmentValue light = environment.value_from(path.d);
+    const double share = path.pdf / (path.pdf + light.pdf);
+    if constexpr (connecting) {
+      const Rgb expected = connector_.expected(path.n);
+      collector_.collect(path, expected + (light.radiance - expected) * static_cast<float>(share),
+                         path.weight);
+    } else {
+      collector_.collect(path, light.radiance, path.weight * share);
+    }
+  }
+
+  void arrive_inside(Path& path, const Hit& hit) {
+    path.length += hit.t;
+    path.p = hit.p;
+    path.n = hit.n;
+    collector_.note("boundary", path);
+  }
+
+  bool count_event(Path& path) {
+    ++tile_.counters.boundary_events;
+    if (++path.events < (scattering ? scattering_event_cap : clear_event_cap)) return true;
+    collector_.give_up(path);
+    return false;
+  }
+
+  /// A path that slipped out of a mesh by rounding would walk for ever.
+  static bool strayed(const Particle& particle) {
+    if constexpr (std::is_same_v<Shape, Mesh> && !dense) return length_squared(particle.p) > 1.01;
+    return false;
+  }
+
+  const Scene& scene_;
+  const Shape& shape_;
+  const Interface& interface_;
+  const Interior& interior_;
+  Tile& tile_;
+  Collector collector_;
+  std::conditional_t<connecting, SphereConnector, NoConnector> connector_;
+  std::vector<Path> arriving_, walking_, leaving_;
+};
+
+/// Of what the paths of a tile share, a few samples at a time.
+inline std::uint64_t shared_key(const Scene& scene, std::uint32_t pass_index, std::uint32_t first,
+                                const Tile& tile) {
+  const std::uint64_t batch = hash_combine(pass_index, first / samples_at_once);
+  return hash_combine(hash_combine(scene.seed, tile.index), batch);
+}
+
+template <class Shape>
+void trace_body(const Shape& shape, const Scene& scene, std::uint32_t pass_index,
+                std::uint32_t first, std::uint32_t count, Tile& tile, std::string* log) {
+  std::visit(
+      [&](const auto& interface, const auto& interior) {
+        Tracer(scene, shape, interface, interior, tile, shared_key(scene, pass_index, first, tile),
+               log)
+            .run(pass_index, first, count);
+      },
+      scene.interface, scene.interior);
+}
+
+}  // namespace translucube
+
+#include "renderer/tracer_diffuse.h"
+#include "renderer/tracer_rough.h"
+#include "renderer/tracer_smooth.h"
