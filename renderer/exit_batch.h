@@ -1,12 +1,13 @@
 #pragma once
 
 // Next-event estimation through the smooth boundary of the unit sphere, many vertices at a time:
-// the near way out of sphere_exit.h in SIMD (exit_batch.cpp), in single precision.
+// the ways out of sphere_exit.h in SIMD (exit_batch.cpp), in single precision.
 
 #include <array>
 #include <cstddef>
 
-#include "renderer/vec.h"
+#include "renderer/medium.h"
+#include "renderer/sphere_exit.h"
 
 namespace translucube {
 
@@ -50,7 +51,11 @@ struct ExitBatch {
   }
 };
 
-/// Fills the batch's results.
-void find_near_exits(const ExitMedium& medium, ExitBatch& batch);
+/// The share of one way out, in double precision.
+double share(const Medium& medium, double ior, const SphereExit& exit, Vec3 before,
+             double light_pdf);
+
+/// Fills the batch's results for the way out on one branch.
+void find_exits(const ExitMedium& medium, ExitBranch branch, ExitBatch& batch);
 
 }  // namespace translucube

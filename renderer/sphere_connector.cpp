@@ -24,31 +24,27 @@ bool SphereConnector::reaches_far(const SphereExits& exits) const {
   return medium_.sigma_s * exits.shortest_far() < longest_way;
 }
 
-double SphereConnector::share_of(const SphereExit& exit, Vec3 before, double light_pdf) const {
-  const double pdf = medium_.phase(dot(before, exit.d)) *
-                     std::exp(-medium_.sigma_s * exit.distance) * exit.jacobian;
-  return (1 - fresnel(exit.cos_i, 1 / ior_)) * pdf / (light_pdf + pdf);
-}
-
 void SphereConnector::connect(Path& path) {
   const double chance = this->chance(path.p);
   Rng& rng = path.sampler.rng();
   if (rng.uniform() >= chance) return;
   ++collector_.counters().connections;
   collector_.note("connect", path);
-  const auto index = static_cast<std::uint32_t>(rng.bits() & (light_count - 1));
-  const EnvironmentSample& light = lights_[index];
-  const double pdf = chance * light.value.pdf;
-  const Waiting from{path.p,     path.d, path.length, static_cast<float>(path.weight),
-                     path.pixel, index};
+  const auto light = static_cast<std::uint32_t>(rng.bits() & (light_count - 1));
+  const double pdf = chance * lights_[light].value.pdf;
+  const Waiting vertex{path.p,     path.d, path.length, static_cast<float>(path.weight),
+                       path.pixel, light};
   const SphereExits exits(ior_, path.p);
-  if (reaches_far(exits))
-    exits.far_towards(light.direction, [&](const SphereExit& exit) {
-      collect(from, exit.distance, path.p + exit.distance * exit.d, share_of(exit, path.d, pdf));
-    });
-  waiting_[batch_.size] = from;
-  batch_.push(path.p, std::fmax(length(path.p), 1e-12), path.d, light.direction, pdf);
-  if (batch_.size == ExitBatch::capacity) flush();
+  push(near_, vertex, exits.rho(), pdf);
+  if (near_.batch.size == ExitBatch::capacity) flush_near();
+  if (!reaches_far(exits)) return;
+  push(far_, vertex, exits.rho(), pdf);
+  if (far_.batch.size == ExitBatch::capacity) flush_far();
+}
+
+void SphereConnector::push(Queue& queue, const Waiting& vertex, double rho, double pdf) const {
+  queue.waiting[queue.batch.size] = vertex;
+  queue.batch.push(vertex.p, std::fmax(rho, 1e-12), vertex.d, lights_[vertex.light].direction, pdf);
 }
 
 double SphereConnector::pdf(const Path& path) const {
@@ -59,24 +55,33 @@ double SphereConnector::pdf(const Path& path) const {
          exits.jacobian(path.d) / chance(path.vertex);
 }
 
-void SphereConnector::flush() {
-  find_near_exits({static_cast<float>(ior_), static_cast<float>(medium_.sigma_s),
-                   static_cast<float>(medium_.g)},
-                  batch_);
-  for (std::size_t i = 0; i < batch_.size; ++i) {
-    if (batch_.share[i] > 0) {
-      collect(waiting_[i], batch_.distance[i],
-              {batch_.normal_x[i], batch_.normal_y[i], batch_.normal_z[i]}, batch_.share[i]);
-    } else if (batch_.share[i] != 0) {  // not found, or not finite: sought again
-      const Waiting& from = waiting_[i];
-      SphereExits(ior_, from.p)
-          .near_towards(lights_[from.light].direction, [&](const SphereExit& exit) {
-            collect(from, exit.distance, from.p + exit.distance * exit.d,
-                    share_of(exit, from.d, batch_.light_pdf[i]));
-          });
+void SphereConnector::flush_near() {
+  collect(near_, ExitBranch::near);
+  near_.batch.size = 0;
+}
+
+void SphereConnector::flush_far() {
+  for (const ExitBranch branch : far_branches) collect(far_, branch);
+  far_.batch.size = 0;
+}
+
+void SphereConnector::collect(Queue& queue, ExitBranch branch) {
+  ExitBatch& batch = queue.batch;
+  find_exits({static_cast<float>(ior_), static_cast<float>(medium_.sigma_s),
+              static_cast<float>(medium_.g)},
+             branch, batch);
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const Waiting& from = queue.waiting[i];
+    if (batch.share[i] > 0) {
+      collect(from, batch.distance[i], {batch.normal_x[i], batch.normal_y[i], batch.normal_z[i]},
+              batch.share[i]);
+    } else if (batch.share[i] != 0) {  // not found, or not finite: sought in double precision
+      const Vec3 w = lights_[from.light].direction;
+      if (const auto exit = SphereExits(ior_, from.p).towards(w, branch))
+        collect(from, exit->distance, from.p + exit->distance * exit->d,
+                share(medium_, ior_, *exit, from.d, batch.light_pdf[i]));
     }
   }
-  batch_.size = 0;
 }
 
 void SphereConnector::collect(const Waiting& from, double distance, Vec3 normal, double share) {

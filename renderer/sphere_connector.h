@@ -42,7 +42,10 @@ class SphereConnector {
   /// which it goes on outside, over the chance that connect() looked there; 0: it never does.
   double pdf(const Path& path) const;
   /// Collects what is under way.
-  void flush();
+  void flush() {
+    flush_near();
+    flush_far();
+  }
 
   /// What the walk carries of the light that is expected to leave at a place with normal n.
   Rgb expected(Vec3 n) const { return environment_->irradiance(n) * carried_by_walk; }
@@ -63,20 +66,25 @@ class SphereConnector {
     float weight;
     std::uint32_t pixel, light;
   };
+  struct Queue {
+    ExitBatch batch;
+    std::array<Waiting, ExitBatch::capacity> waiting;
+  };
 
   double chance(Vec3 p) const;
   bool reaches_far(const SphereExits& exits) const;
-  /// The share of exit_batch.h of one way out, in double precision.
-  double share_of(const SphereExit& exit, Vec3 before, double light_pdf) const;
+  void push(Queue& queue, const Waiting& vertex, double rho, double pdf) const;
+  void collect(Queue& queue, ExitBranch branch);
   void collect(const Waiting& from, double distance, Vec3 normal, double share);
+  void flush_near();
+  void flush_far();
 
   Collector& collector_;
   const ImageEnvironment* environment_;
   Medium medium_;
   double ior_;
   std::vector<EnvironmentSample> lights_;
-  ExitBatch batch_;
-  std::array<Waiting, ExitBatch::capacity> waiting_;
+  Queue near_, far_;
 };
 
 }  // namespace translucube

@@ -10,12 +10,20 @@
 // from the outward radius. On the near branch, beta below pi / 2 or the critical angle, psi grows
 // from 0 and has one root. On the far branch it falls from pi to a minimum and may rise again.
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "renderer/vec.h"
 
 namespace translucube {
+
+/// The parts of the two branches in which psi is monotone. On far_round the light goes the other
+/// way round the body: psi = 2 pi - theta.
+enum class ExitBranch { near, far_falling, far_rising, far_round };
+inline constexpr std::array far_branches{ExitBranch::far_falling, ExitBranch::far_rising,
+                                         ExitBranch::far_round};
 
 /// One way out.
 struct SphereExit {
@@ -31,18 +39,15 @@ class SphereExits {
   /// `ior` >= 1; p inside the unit sphere.
   SphereExits(double ior, Vec3 p);
 
-  /// Calls f(SphereExit) for each way out towards w (unit) on a branch: at most one on the near
-  /// branch, up to three on the far one.
-  template <class F>
-  void near_towards(Vec3 w, F&& f) const;
-  template <class F>
-  void far_towards(Vec3 w, F&& f) const;
+  /// The way out towards w (unit) on a branch, if there is one.
+  std::optional<SphereExit> towards(Vec3 w, ExitBranch branch) const;
 
   /// Length of the shortest way out on the far branch.
   double shortest_far() const {
     const double sin_i = std::fmin(rho_, 1 / ior_);  // at the end of the branch
     return std::sqrt(1 - sin_i * sin_i) + std::sqrt(std::fmax(0.0, rho_ * rho_ - sin_i * sin_i));
   }
+  double rho() const { return rho_; }
   /// d omega_inside / d omega_outside of a ray from the point along d.
   double jacobian(Vec3 d) const;
   /// Whether a ray along d belongs to the far branch.
@@ -168,22 +173,21 @@ inline SphereExit SphereExits::exit_at(double x, bool far, Vec3 across) const {
   return exit;
 }
 
-template <class F>
-void SphereExits::near_towards(Vec3 w, F&& f) const {
+inline std::optional<SphereExit> SphereExits::towards(Vec3 w, ExitBranch branch) const {
   const Wanted to = wanted(w);
-  if (to.angle < psi(x_max, false)) f(exit_at(solve(to.angle, false, 0, x_max), false, to.across));
-}
-
-template <class F>
-void SphereExits::far_towards(Vec3 w, F&& f) const {
-  const Wanted to = wanted(w);
-  const double x_min = far_minimum(), least = psi(x_min, true), end = psi(x_max, true);
-  const double round = 2 * std::numbers::pi - to.angle;
-  if (to.angle > least) {
-    if (x_min > 0) f(exit_at(solve(to.angle, true, 0, x_min), true, to.across));
-    if (to.angle < end) f(exit_at(solve(to.angle, true, x_min, x_max), true, to.across));
+  if (branch == ExitBranch::near) {
+    if (to.angle >= psi(x_max, false)) return {};
+    return exit_at(solve(to.angle, false, 0, x_max), false, to.across);
   }
-  if (round < end) f(exit_at(solve(round, true, x_min, x_max), true, -to.across));
+  const double x_min = far_minimum(), least = psi(x_min, true), end = psi(x_max, true);
+  if (branch == ExitBranch::far_falling) {
+    if (to.angle <= least || x_min == 0) return {};
+    return exit_at(solve(to.angle, true, 0, x_min), true, to.across);
+  }
+  const bool round = branch == ExitBranch::far_round;
+  const double target = round ? 2 * std::numbers::pi - to.angle : to.angle;
+  if (target <= least || target >= end) return {};
+  return exit_at(solve(target, true, x_min, x_max), true, round ? -to.across : to.across);
 }
 
 }  // namespace translucube
