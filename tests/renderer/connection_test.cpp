@@ -134,16 +134,16 @@ ImageEnvironment white_image() {
 }
 
 TEST(Connections, OfAWhiteImageKeepTheFurnace) {
-  for (const double sigma_s : {0.2, 2.0, 30.0})
+  for (const double sigma_s : {0.2, 30.0})
     for (const double ior : {1.0, 1.5, 2.5}) {
       Scene scene = body(Sphere{}, material(ior, 0, sigma_s));
       scene.environment = white_image();
       look_from_afar(scene, 0.7, 32);
-      const Film film = trace(scene, 512);
+      const Film film = trace(scene, 256);
       const Estimate e = image_mean(film);
       EXPECT_GT(film.counters.connections, 0u);
       EXPECT_NEAR(e.mean, 1, 3 * e.standard_error) << "sigma_s " << sigma_s << " ior " << ior;
-      EXPECT_LT(e.standard_error, 1e-3);
+      EXPECT_LT(e.standard_error, 1.5e-3);
     }
 }
 
@@ -152,9 +152,9 @@ TEST(Connections, OfForwardAndBackwardScatteringKeepTheFurnace) {
     Scene scene = body(Sphere{}, material(1.5, 0, 4, g));
     scene.environment = white_image();
     look_from_afar(scene, 0.7, 32);
-    const Estimate e = image_mean(trace(scene, 512));
+    const Estimate e = image_mean(trace(scene, 256));
     EXPECT_NEAR(e.mean, 1, 3 * e.standard_error) << "g " << g;
-    EXPECT_LT(e.standard_error, 1e-3);
+    EXPECT_LT(e.standard_error, 1.5e-3);
   }
 }
 
@@ -174,11 +174,11 @@ TEST(Connections, FindWhatTheWalkAloneFinds) {
     const Film connected = trace(half_lit(sigma_s, 1.5, 0.3f), 512);
     Scene plain = half_lit(sigma_s, 1.5, 0.3f);
     plain.interface = RoughInterface{1.5, Ggx{1e-4}};
-    const Film walked = trace(plain, 2048);
+    const Film walked = trace(plain, 1024);
     EXPECT_GT(connected.counters.connections, 0u);
     const Estimate a = image_mean(connected), b = image_mean(walked);
     EXPECT_NEAR(a.mean, b.mean, 4 * std::hypot(a.standard_error, b.standard_error)) << sigma_s;
-    EXPECT_LT(std::hypot(a.standard_error, b.standard_error), 0.01 * b.mean) << sigma_s;
+    EXPECT_LT(std::hypot(a.standard_error, b.standard_error), 0.015 * b.mean) << sigma_s;
   }
 }
 
