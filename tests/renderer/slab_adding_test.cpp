@@ -77,12 +77,10 @@ TEST(Adding, AgreesWithWalks) {
 }
 
 TEST(LongAdding, AgreesWithWalks) {
-  for (const double alpha : {0.0, 0.02, 0.1, 0.3, 1.0})
-    for (const double ior : {1.0, 1.01, 1.5, 2.5})
-      for (const double g : {-0.5, 0.0, 0.5, 0.9, 0.99}) {
-        const double sigma_s = g == 0.99 ? 40 : 10;
-        expect_walks(grey(ior, alpha, sigma_s, 0.3, g), 1'000'000);
-      }
+  for (const double alpha : {0.0, 0.1, 1.0})
+    for (const double ior : {1.01, 1.5, 2.5})
+      for (const double g : {-0.5, 0.5, 0.9})
+        expect_walks(grey(ior, alpha, 10, 0.3, g), 500'000);
 }
 
 TEST(Adding, LeavesToWalksWhatItDoesNotResolve) {
