@@ -1,0 +1,105 @@
+// The renderer's crossing of a rough interface against the plain random walk of Heitz, Hanika,
+// d'Eon, Dachsbacher 2016, section 4: in the space of heights, one ray at a time, nothing split,
+// weighted or cut short.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "renderer/microsurface.h"
+#include "tests/support/chi2.h"
+
+namespace translucube::test {
+namespace {
+
+/// Smith's Lambda of a direction above the surface (Walter 2007, eq. 34).
+double lambda(double alpha, Vec3 w) {
+  const double tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
+  return 0.5 * (std::sqrt(1 + alpha * alpha * tan2) - 1);
+}
+
+Vec3 mirrored(Vec3 w) { return {w.x, w.y, -w.z}; }
+
+/// Where a ray from wo leaves, in wo's frame.
+Vec3 plain_walk(double alpha, double eta, Vec3 wo, Rng& rng) {
+  Vec3 d = -wo;      // of travel, in the frame of the side it is on
+  double below = 1;  // share of heights below it
+  bool beyond = false;
+  while (true) {
+    if (d.z < 0) {
+      below *= std::pow(rng.uniform_positive(), 1 / (1 + lambda(alpha, -d)));
+    } else {
+      below *= std::pow(rng.uniform_positive(), -1 / lambda(alpha, d));
+      if (below >= 1) return beyond ? mirrored(d) : d;
+    }
+    const Vec3 w = -d, m = Ggx{alpha}.sample_visible(w, rng.uniform2());
+    if (rng.uniform() < fresnel(dot(w, m), eta)) {
+      d = reflect(w, m);
+    } else {
+      d = mirrored(*refract(w, m, eta));
+      below = 1 - below;
+      beyond = !beyond;
+      eta = 1 / eta;
+    }
+  }
+}
+
+/// Either side, five zones of the cosine, forwards and backwards.
+constexpr int zones = 5, bins = 2 * zones * 2;
+int bin_of(Vec3 wi) {
+  const int zone = std::min(zones - 1, static_cast<int>(zones * std::fabs(wi.z)));
+  return ((wi.z > 0 ? zones : 0) + zone) * 2 + (wi.x > 0);
+}
+
+struct Histogram {
+  std::array<double, bins> sum{}, squares{};
+  int walks = 0;
+
+  void add(const std::array<double, bins>& walk) {
+    for (int i = 0; i < bins; ++i) {
+      sum[i] += walk[i];
+      squares[i] += walk[i] * walk[i];
+    }
+    ++walks;
+  }
+  double mean(int i) const { return sum[i] / walks; }
+  double variance_of_mean(int i) const { return (squares[i] / walks - mean(i) * mean(i)) / walks; }
+};
+
+TEST(Microsurface, SendsLightWhereThePlainRandomWalkDoes) {
+  constexpr int walks = 60'000;
+  const std::array alphas{0.1, 0.4, 1.0};
+  const std::array etas{1.5, 1 / 1.5}, cosines{0.9, 0.3};
+  const double family = bins * alphas.size() * etas.size() * cosines.size();
+  for (const double alpha : alphas)
+    for (const double eta : etas)
+      for (const double mu : cosines) {
+        const Vec3 wo{std::sqrt(1 - mu * mu), 0, mu};
+        Histogram plain, ours;
+        for (int i = 0; i < walks; ++i) {
+          Rng rng(hash_combine(11, i));
+          std::array<double, bins> walk{};
+          walk[bin_of(plain_walk(alpha, eta, wo, rng))] = 1;
+          plain.add(walk);
+          // The sampler's stratified numbers would make the walks' errors smaller than told.
+          PathSampler sampler(hash_combine(12, i), 0);
+          walk = {};
+          cross_microsurface(
+              RoughInterface{1.5, Ggx{alpha}}, eta, wo, sampler, [](const MicroVertex&) {},
+              [&](Vec3 wi, double weight, double) { walk[bin_of(wi)] += weight; });
+          ours.add(walk);
+        }
+        for (int i = 0; i < bins; ++i) {
+          const double error = std::sqrt(plain.variance_of_mean(i) + ours.variance_of_mean(i));
+          if (plain.mean(i) * walks < 30) continue;  // too few to be normal
+          const double z = (ours.mean(i) - plain.mean(i)) / error;
+          EXPECT_GT(std::erfc(std::fabs(z) / std::sqrt(2.0)), sidak(static_cast<int>(family)))
+              << "alpha " << alpha << " eta " << eta << " mu " << mu << " bin " << i << ": "
+              << ours.mean(i) << " for " << plain.mean(i) << " +- " << error;
+        }
+      }
+}
+
+}  // namespace
+}  // namespace translucube::test
