@@ -2,10 +2,13 @@
 // and what is found with them is what the walk alone finds.
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "renderer/exit_batch.h"
@@ -124,6 +127,40 @@ TEST(SphereExits, ManyAtATimeAreTheSameAsOne) {
         EXPECT_LE(differ, 2) << int(branch) << " ior " << ior;
         EXPECT_LE(not_found, 8) << int(branch) << " ior " << ior;
       }
+}
+
+TEST(SphereExits, InstructionSetsDifferByRoundingAlone) {
+  Rng rng(5);
+  auto batch = std::make_unique<ExitBatch>();
+  for (std::size_t i = 0; i < ExitBatch::capacity; ++i) {
+    const double depth = 0.001 + 0.9 * rng.uniform();
+    batch->push((1 - depth) * random_direction(rng), 1 - depth, random_direction(rng),
+                random_direction(rng), 0.1);
+  }
+  for (const ExitBranch branch : all_branches) {
+    std::map<std::string, ExitBatch::Floats> shares;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      hwy::GetChosenTarget().DeInit();
+      find_exits({1.5f, 2, 0.3f}, branch, *batch);
+      shares[hwy::TargetName(target)] = batch->share;
+      hwy::SetSupportedTargetsForTest(0);
+      hwy::GetChosenTarget().DeInit();
+    }
+    const ExitBatch::Floats& first = shares.begin()->second;
+    for (const auto& [name, share] : shares) {
+      int differ = 0;
+      for (std::size_t i = 0; i < first.size(); ++i)
+        differ += first[i] >= 0 && share[i] >= 0 &&
+                  std::fabs(share[i] - first[i]) > 3e-3 * first[i] + 1e-4;
+      EXPECT_LE(differ, 2) << name;
+    }
+    // The same fused operations: the same request gives the same bits on both.
+    if (shares.contains("AVX2") && shares.contains("AVX3")) {
+      EXPECT_EQ(shares["AVX2"], shares["AVX3"]);
+    }
+    EXPECT_GE(shares.size(), 2u);
+  }
 }
 
 /// White from everywhere, but as an image: light is looked for all the same.
