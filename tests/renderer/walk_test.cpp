@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "renderer/lambertian.h"
-#include "tests/support/truths.h"
 #include "tests/support/walks.h"
 
 namespace translucube::test {

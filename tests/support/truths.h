@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "renderer/fresnel.h"
+#include "renderer/lambertian.h"
 #include "renderer/walk.h"
 #include "tests/support/scenes.h"
 
@@ -57,10 +57,6 @@ inline LitSlab lit_slab(const Material& m, float sigma_a, std::uint32_t samples,
   return optics;
 }
 
-struct WalkLength : Estimate {
-  double collisions = 0;  ///< of a walk, with all that it is split into
-};
-
 /// A walk of diffuse light in a unit sphere, apart from the transport: one particle at a time from
 /// the north pole, which stands for every point of the surface.
 struct SphereWalk {
@@ -75,10 +71,6 @@ struct SphereWalk {
 
   /// Mean share of the light that leaves the sphere again, reflection at the entrance included.
   Estimate leaving(int walks, std::uint64_t key) const;
-  /// Mean length inside. Nearly all light turns back near the surface and nearly all length is
-  /// travelled deep inside, so particles are split as they go down and played out as they come up
-  /// (weight window).
-  WalkLength length(int walks, std::uint64_t key) const;
 
  private:
   struct Entered {
@@ -132,50 +124,6 @@ inline Estimate SphereWalk::leaving(int walks, std::uint64_t key) const {
     squares += left * left;
   }
   return estimate_of(sum, squares, walks);
-}
-
-inline WalkLength SphereWalk::length(int walks, std::uint64_t key) const {
-  struct Weighted : Particle {
-    double weight = 1;
-  };
-  std::vector<Weighted> stack;
-  double sum = 0, squares = 0, collisions = 0;
-  for (int i = 0; i < walks; ++i) {
-    Rng rng(hash_combine(key, i));
-    const auto [entered, share] = enter(rng);
-    stack.push_back({entered, share});
-    double total = 0;
-    while (!stack.empty()) {
-      Weighted particle = stack.back();
-      stack.pop_back();
-      while (true) {
-        Hit hit;
-        const double before = particle.length;
-        if (!fly(Sphere{}, medium, particle, rng, hit)) {
-          const bool gone = leaves(hit, particle, rng);
-          total += particle.weight * (particle.length - before);
-          if (gone) break;
-          continue;
-        }
-        scatter(Sphere{}, medium, particle, rng);
-        ++collisions;
-        total += particle.weight * (particle.length - before);
-        const double depth =
-            0.5 * (1 - length_squared(particle.p)) * medium.sigma_s * (1 - medium.g);
-        const double wanted = std::fmin(1.0, 1 / depth);
-        if (particle.weight > 2 * wanted) {
-          particle.weight /= 2;
-          stack.push_back(particle);
-        } else if (particle.weight < wanted / 2) {
-          if (rng.uniform() < 0.5) break;
-          particle.weight *= 2;
-        }
-      }
-    }
-    sum += total;
-    squares += total * total;
-  }
-  return {estimate_of(sum, squares, walks), collisions / walks};
 }
 
 }  // namespace translucube::test
