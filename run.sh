@@ -73,7 +73,7 @@ ready=$SECONDS
 echo "service ready at $address"
 
 request='{
-  "material": {"cube": {"absorption": 0.35, "roughness": 0.25, "scattering": 0.35}, "absorber": "red-glass"},
+  "material": {"cube": {"absorption": 0.35, "roughness": 0, "scattering": 0.35}, "absorber": "red-glass"},
   "scene": {"environment": {"image": "forest"}},
   "image": {"width": 512, "height": 512},
   "quality": {"seconds": 20}
