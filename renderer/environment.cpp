@@ -9,13 +9,6 @@ namespace translucube {
 
 using std::numbers::pi;
 
-EnvironmentValue UniformEnvironment::value_from(Vec3) const { return {radiance, 1 / (4 * pi)}; }
-
-EnvironmentSample UniformEnvironment::sample(Sample2 u) const {
-  const double z = 1 - 2 * u.u, r = std::sqrt(std::fmax(0.0, 1 - z * z)), phi = 2 * pi * u.v;
-  return {{r * std::cos(phi), r * std::sin(phi), z}, {radiance, 1 / (4 * pi)}};
-}
-
 ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, double scale)
     : width_(image.width), height_(image.height), rotation_rad_(rotation_rad) {
   texels_.resize(std::size_t(width_) * height_);

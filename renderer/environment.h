@@ -26,7 +26,6 @@ struct UniformEnvironment {
   Rgb radiance{1, 1, 1};
 
   Rgb radiance_from(Vec3) const { return radiance; }
-  EnvironmentValue value_from(Vec3) const;
   EnvironmentSample sample(Sample2 u) const;
 };
 

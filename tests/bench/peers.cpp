@@ -5,6 +5,8 @@
 //   peers [--samples N] [--size N] [--threads N] [--json FILE] [--only A0,S1] [--seed N]
 //         [--microfacets multiple|single]   (the peers scatter once only)
 
+#include "tests/support/peers.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -13,8 +15,6 @@
 #include <sstream>
 #include <string>
 #include <vector>
-
-#include "renderer/render.h"
 
 namespace {
 
@@ -32,33 +32,20 @@ constexpr PeerMaterial materials[] = {
     {"S01", 0, .1, 0, .36},  {"S1", 0, 1, 0, 2.1},    {"S10", 0, 10, 0, 11.5},
     {"S100", 0, 100, 0, 44}, {"M", .1, 5, .2, 3.6},   {"C", 0, 10, 1, 9.5}};
 
-SceneSpec peer_scene(const PeerMaterial& m, bool multiple, int size, std::uint64_t seed) {
-  SceneSpec spec;
-  spec.material.coefficients = {m.sigma_a, m.alpha, m.sigma_s};
-  spec.material.absorber = RgbAbsorber{{0.15, 1, 1}};
+SceneSpec scene_of(const PeerMaterial& m, bool multiple, int size, std::uint64_t seed) {
+  SceneSpec spec = test::peer_scene({m.sigma_a, m.alpha, m.sigma_s}, size, seed);
   spec.material.multiple_scattering = multiple;
-  spec.object = SphereObject{1};
-  spec.environment.source =
-      ImageEnvironmentSpec{TRANSLUCUBE_SOURCE_DIR "/config/environments/forest.exr"};
-  spec.camera = {{0, 0, 4.5}, {0, 0, 0}, {0, 1, 0}, 32};
-  spec.width = spec.height = size;
-  spec.seed = seed;
   return spec;
 }
 
-/// The 5 x 5 mean, as a denominator that a noisy pixel cannot flatter.
+/// Every pixel by its surroundings.
 Image smoothed(const Image& image) {
   Image out(image.width, image.height);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      for (int c = 0; c < 3; ++c) {
-        double sum = 0;
-        int n = 0;
-        for (int v = std::max(0, y - 2); v <= std::min(image.height - 1, y + 2); ++v)
-          for (int u = std::max(0, x - 2); u <= std::min(image.width - 1, x + 2); ++u, ++n)
-            sum += image.pixels[3 * (std::size_t(v) * image.width + u) + c];
-        out.pixels[3 * (std::size_t(y) * image.width + x) + c] = static_cast<float>(sum / n);
-      }
+      for (int c = 0; c < 3; ++c)
+        out.pixels[3 * (std::size_t(y) * image.width + x) + c] =
+            static_cast<float>(test::smoothed(image, x, y, c));
   return out;
 }
 
@@ -118,9 +105,10 @@ int main(int argc, char** argv) {
   for (const PeerMaterial& m : materials) {
     if (!only.empty() && only.find("," + std::string(m.name) + ",") == std::string::npos) continue;
     const SampleTarget target{samples};
-    const RenderResult first = render(*build_scene(peer_scene(m, multiple, size, seed)), target, threads);
+    const RenderResult first =
+        render(*build_scene(scene_of(m, multiple, size, seed)), target, threads);
     const RenderResult second =
-        render(*build_scene(peer_scene(m, multiple, size, seed + 1)), target, threads);
+        render(*build_scene(scene_of(m, multiple, size, seed + 1)), target, threads);
     const Image a = develop(first.film), b = develop(second.film);
     const RelMse error = rel_mse(a, b, m.alpha == 0 && m.sigma_s == 0);
     const double cpu = (first.stats.cpu_seconds + second.stats.cpu_seconds) / 2;

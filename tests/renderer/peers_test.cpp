@@ -1,15 +1,17 @@
 // Rough interfaces that scatter once, as the exact-transport peers have them (shared/peers.md), and
 // what they lose against those that scatter as often as it takes.
 
+#include "tests/support/peers.h"
+
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 
 #include "renderer/lambertian.h"
 #include "renderer/microsurface.h"
-#include "tests/support/scenes.h"
 
 namespace translucube::test {
 namespace {
@@ -18,24 +20,11 @@ struct PeerMeans {
   double alpha, rgb[3], error;
 };
 void expect_means_of(const PeerMeans& peer, std::uint32_t samples, double largest_error) {
-  SceneSpec spec;
-  spec.material = material(1.5, peer.alpha, 0);
+  SceneSpec spec = peer_scene({0, peer.alpha, 0}, 64, 1);
   spec.material.multiple_scattering = false;
-  spec.object = SphereObject{1};
-  spec.environment.source =
-      ImageEnvironmentSpec{TRANSLUCUBE_SOURCE_DIR "/config/environments/forest.exr"};
-  spec.camera = {{0, 0, 4.5}, {0, 0, 0}, {0, 1, 0}, 32};
-  spec.width = spec.height = 64;
-  const Film film = trace(*build_scene(spec), samples);
-  const Image image = develop(film), spread = variance(film);
-  const std::size_t n = image.pixels.size() / 3;
+  const std::array<Estimate, 3> means = channel_means(trace(*build_scene(spec), samples));
   for (std::size_t c = 0; c < 3; ++c) {
-    double mean = 0, error = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      mean += image.pixels[3 * i + c] / n;
-      error += spread.pixels[3 * i + c];
-    }
-    error = std::sqrt(error) / n;
+    const auto [mean, error] = means[c];
     std::printf("alpha %g channel %zu: %.5f +- %.5f, peers %.4f\n", peer.alpha, c, mean, error,
                 peer.rgb[c]);
     EXPECT_NEAR(mean, peer.rgb[c], peer.error + 3 * error) << "channel " << c << " +- " << error;

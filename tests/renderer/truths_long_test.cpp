@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 #include "renderer/appearance.h"
-#include "tests/support/scenes.h"
+#include "tests/support/truths.h"
 
 namespace translucube::test {
 namespace {
@@ -35,24 +34,16 @@ void expect_truth(const Scene& scene, double expected, const std::string& what) 
   EXPECT_LE(e.standard_error / expected, largest_error) << what;
 }
 
-Scene slab_scene(const Material& m, float sigma_a, bool above) {
-  Scene scene = body(Slab{}, m);
-  scene.environment = half_space_light(above);
-  scene.lanes = {RgbLane{{sigma_a, sigma_a, sigma_a}}};
-  look_from_afar(scene, 0.1, 64);
-  return scene;
-}
-
 TEST(LongSlab, OfMatchedIndexMeetsVanDeHulst) {
   const Material m = material(1, 0, 90 * 0.02, 0.75);
-  expect_truth(slab_scene(m, 10 * 0.02f, true), 0.09739, "reflectance");
-  expect_truth(slab_scene(m, 10 * 0.02f, false), 0.66096, "transmittance");
+  expect_truth(lit_slab_scene(m, 10 * 0.02f, true), 0.09739, "reflectance");
+  expect_truth(lit_slab_scene(m, 10 * 0.02f, false), 0.66096, "transmittance");
 }
 
 // 0.2600 has four digits: its rounding of 0.02 % is a tenth of the tolerance.
 TEST(LongSlab, ThickEnoughMeetsGiovanellisHalfSpace) {
   constexpr float depth = 60;  // mean free paths of scattering
-  expect_truth(slab_scene(material(1.5, 0, depth), depth / 9, true), 0.2600, "reflectance");
+  expect_truth(lit_slab_scene(material(1.5, 0, depth), depth / 9, true), 0.2600, "reflectance");
 }
 
 TEST(LongSlab, OpticsFromTheLightsSideMeetBoth) {
@@ -73,12 +64,10 @@ TEST(LongSlab, OpticsFromTheLightsSideMeetBoth) {
 TEST(LongMeanPathLength, OfAScatteringSphereIsExact) {
   for (const double ior : {1.0, 1.33, 1.5, 2.5})
     for (const double sigma_s : {0.1, 1.0, 10.0}) {
-      Scene scene = body(Sphere{}, material(ior, 0, sigma_s));
-      scene.lanes = {LengthLane{}};
-      look_from_afar(scene, 1.0, 64);
       std::ostringstream what;
       what << "ior " << ior << " sigma_s " << sigma_s;
-      expect_truth(scene, std::numbers::pi / 4 * 4.0 / 3 * ior * ior, what.str());
+      expect_truth(path_scene(Sphere{}, material(ior, 0, sigma_s)), disc * 4.0 / 3 * ior * ior,
+                   what.str());
     }
 }
 

@@ -1,24 +1,19 @@
 // The truths of design.md section 6 that the plain transport must meet: exact values, not our own
 // output.
 
+#include "tests/support/truths.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "tests/support/scenes.h"
-
 namespace translucube::test {
 namespace {
-
-constexpr double reference_thickness = 10, radius = 20;  // mm
-
-/// sigma_s of the cube's coordinate, in 1 / radius of the default sphere.
-double sigma_s_of(double s) { return 4.0 / 3 * s / (1 - s) / reference_thickness * radius; }
 
 TEST(WhiteFurnace, ASmoothBodyOfAnyDensityAndIndexVanishes) {
   for (const double s : {0.0, 0.2, 0.5, 0.9, 0.99, 1.0})
     for (const double ior : {1.0, 1.33, 1.5, 2.5}) {
-      Scene scene = body(Sphere{}, material(ior, 0, sigma_s_of(s)));
+      Scene scene = body(Sphere{}, material(ior, 0, sigma_s_of_cube(s)));
       look_from_afar(scene, 0.7, 32);  // the whole image lies on the body
       const Estimate e = image_mean(trace(scene, 512));
       EXPECT_NEAR(e.mean, 1, 1e-3) << "s " << s << " ior " << ior << " +- " << e.standard_error;
@@ -34,15 +29,8 @@ TEST(WhiteFurnace, AnisotropicScatteringLosesNothing) {
   }
 }
 
-/// Mean path inside for each ray that meets the sphere: parallel light over its disc is diffuse
-/// light over its surface.
 Estimate mean_path(const Material& m, std::uint32_t samples) {
-  Scene scene = body(Sphere{}, m);
-  scene.lanes = {LengthLane{}};
-  look_from_afar(scene, 1.0, 64);
-  const Estimate e = image_mean(trace(scene, samples));
-  constexpr double covered = std::numbers::pi / 4;
-  return {e.mean / covered, e.standard_error / covered};
+  return mean_path_of(Sphere{}, m, samples);
 }
 
 // Blanco and Fournier 2003, with the factor n^2 of the radiance inside: 4 V / S n^2.
@@ -75,25 +63,9 @@ TEST(MeanPathLength, OfAClearSmoothSphereLeavesOutTheTrappedDirections) {
   }
 }
 
-/// Reflectance and transmittance of a slab at normal incidence.
-struct SlabOptics {
-  Estimate reflectance, transmittance;
-};
-SlabOptics slab_optics(const Material& m, float sigma_a, std::uint32_t samples) {
-  SlabOptics optics;
-  for (const bool above : {true, false}) {
-    Scene scene = body(Slab{}, m);
-    scene.environment = half_space_light(above);
-    scene.lanes = {RgbLane{{sigma_a, sigma_a, sigma_a}}};
-    look_from_afar(scene, 0.1, 64);
-    (above ? optics.reflectance : optics.transmittance) = image_mean(trace(scene, samples));
-  }
-  return optics;
-}
-
 TEST(Slab, OfMatchedIndexMeetsVanDeHulst) {
   // sigma_a 10, sigma_s 90, thickness 0.02 (van de Hulst 1980, table 35).
-  const SlabOptics s = slab_optics(material(1, 0, 90 * 0.02, 0.75), 10 * 0.02f, 1024);
+  const LitSlab s = lit_slab(material(1, 0, 90 * 0.02, 0.75), 10 * 0.02f, 1024);
   EXPECT_NEAR(s.reflectance.mean / 0.09739, 1, 5e-3) << s.reflectance.standard_error;
   EXPECT_NEAR(s.transmittance.mean / 0.66096, 1, 5e-3) << s.transmittance.standard_error;
   EXPECT_LT(s.reflectance.standard_error / 0.09739, 1.5e-3);
@@ -102,7 +74,7 @@ TEST(Slab, OfMatchedIndexMeetsVanDeHulst) {
 TEST(Slab, ThickEnoughMeetsGiovanellisHalfSpace) {
   // Albedo 0.9, ior 1.5, normal incidence, with the specular part (Giovanelli 1955).
   constexpr double depth = 60;  // mean free paths of scattering
-  const SlabOptics s = slab_optics(material(1.5, 0, depth), depth / 9, 128);
+  const LitSlab s = lit_slab(material(1.5, 0, depth), depth / 9, 128);
   EXPECT_NEAR(s.reflectance.mean / 0.2600, 1, 5e-3) << s.reflectance.standard_error;
   EXPECT_LT(s.reflectance.standard_error / 0.26, 2e-3);
   EXPECT_LT(s.transmittance.mean, 1e-6);
@@ -110,7 +82,7 @@ TEST(Slab, ThickEnoughMeetsGiovanellisHalfSpace) {
 
 TEST(Slab, ClearAndAbsorbingReflectsBetweenItsFaces) {
   const double f = 0.04, tau = 0.5;
-  const SlabOptics s = slab_optics(material(1.5, 0, 0), 0.5f, 256);
+  const LitSlab s = lit_slab(material(1.5, 0, 0), 0.5f, 256);
   const double e = std::exp(-tau), e2 = e * e;
   EXPECT_NEAR(s.transmittance.mean, (1 - f) * (1 - f) * e / (1 - f * f * e2), 1e-4);
   EXPECT_NEAR(s.reflectance.mean, f + f * (1 - f) * (1 - f) * e2 / (1 - f * f * e2), 1e-4);

@@ -30,31 +30,39 @@ inline Estimate over_the_disc(const Estimate& image, double background) {
   return {(image.mean - (1 - disc) * background) / disc, image.standard_error / disc};
 }
 
-/// Mean path inside [radii] for each ray that meets the shape, which must look like a unit sphere.
-inline Estimate mean_path_of(Shape shape, const Material& m, std::uint32_t samples,
-                             std::uint64_t seed, int threads, int size = 64) {
+/// The length inside [radii] of parallel light on a shape that looks like a unit sphere.
+inline Scene path_scene(Shape shape, const Material& m, std::uint64_t seed = 1, int size = 64) {
   Scene scene = body(std::move(shape), m, seed);
   scene.lanes = {LengthLane{}};
   look_from_afar(scene, 1.0, size);
+  return scene;
+}
+/// Its mean for each ray that meets the shape.
+inline Estimate mean_path_of(Shape shape, const Material& m, std::uint32_t samples,
+                             std::uint64_t seed = 1, int threads = 0, int size = 64) {
+  const Scene scene = path_scene(std::move(shape), m, seed, size);
   return over_the_disc(image_mean(trace(scene, samples, threads)), 0);
 }
 
-/// Reflectance and transmittance of a slab of thickness 1 at normal incidence.
+/// A slab of thickness 1 seen along its normal, with light from this side or from the other.
+inline Scene lit_slab_scene(const Material& m, float sigma_a, bool above, std::uint64_t seed = 1) {
+  Scene scene = body(Slab{}, m, seed);
+  scene.environment = half_space_light(above);
+  scene.lanes = {RgbLane{{sigma_a, sigma_a, sigma_a}}};
+  look_from_afar(scene, 0.1, 64);
+  return scene;
+}
+/// Its reflectance and transmittance at normal incidence.
 struct LitSlab {
   Estimate reflectance, transmittance;
 };
-inline LitSlab lit_slab(const Material& m, float sigma_a, std::uint32_t samples, std::uint64_t seed,
-                        int threads) {
-  LitSlab optics;
-  for (const bool above : {true, false}) {
-    Scene scene = body(Slab{}, m, hash_combine(seed, above));
-    scene.environment = half_space_light(above);
-    scene.lanes = {RgbLane{{sigma_a, sigma_a, sigma_a}}};
-    look_from_afar(scene, 0.1, 64);
-    (above ? optics.reflectance : optics.transmittance) =
-        image_mean(trace(scene, samples, threads));
-  }
-  return optics;
+inline LitSlab lit_slab(const Material& m, float sigma_a, std::uint32_t samples,
+                        std::uint64_t seed = 1, int threads = 0) {
+  const auto lit = [&](bool above) {
+    return image_mean(
+        trace(lit_slab_scene(m, sigma_a, above, hash_combine(seed, above)), samples, threads));
+  };
+  return {lit(true), lit(false)};
 }
 
 /// A walk of diffuse light in a unit sphere, apart from the transport: one particle at a time from
