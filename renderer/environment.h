@@ -24,9 +24,6 @@ struct EnvironmentSample {
 /// The same radiance from everywhere.
 struct UniformEnvironment {
   Rgb radiance{1, 1, 1};
-
-  Rgb radiance_from(Vec3) const { return radiance; }
-  EnvironmentSample sample(Sample2 u) const;
 };
 
 /// Lat-long image as OpenEXR defines it: u = 0.5 - atan2(x, z) / (2 pi), v = acos(y) / pi, v = 0
