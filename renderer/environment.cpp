@@ -111,7 +111,7 @@ Rgb ImageEnvironment::irradiance(Vec3 n) const {
   return sum;
 }
 
-ImageEnvironment::Coordinates ImageEnvironment::coordinates(Vec3 d) const {
+MapCoordinates ImageEnvironment::coordinates(Vec3 d) const {
   const double azimuth =
       std::atan2(static_cast<float>(d.x), static_cast<float>(d.z)) - rotation_rad_;
   double u = 0.5 - azimuth / (2 * pi);
@@ -148,16 +148,23 @@ double ImageEnvironment::cell_pdf(int x, int y, double sin_theta) const {
   return t.weight / (2 * pi * pi * std::fmax(sin_theta, 1e-12));
 }
 
-Rgb ImageEnvironment::radiance_from(Vec3 direction) const {
-  const Coordinates c = coordinates(direction);
-  return bilinear(c.x, c.y);
+EnvironmentValue ImageEnvironment::value_at(MapCoordinates at) const {
+  const int x = std::clamp(static_cast<int>(at.x), 0, width_ - 1);
+  const int y = std::clamp(static_cast<int>(at.y), 0, height_ - 1);
+  return {bilinear(at.x, at.y), cell_pdf(x, y, at.sin_theta)};
 }
 
-EnvironmentValue ImageEnvironment::value_from(Vec3 direction) const {
-  const Coordinates c = coordinates(direction);
-  const int x = std::clamp(static_cast<int>(c.x), 0, width_ - 1);
-  const int y = std::clamp(static_cast<int>(c.y), 0, height_ - 1);
-  return {bilinear(c.x, c.y), cell_pdf(x, y, c.sin_theta)};
+MapGeometry ImageEnvironment::geometry() const {
+  return {static_cast<float>(width_), static_cast<float>(height_),
+          static_cast<float>(rotation_rad_)};
+}
+
+void ImageEnvironment::prefetch(float x, float y) const {
+  const int column = std::clamp(static_cast<int>(x - 0.5f), 0, width_ - 1);
+  const int row = std::clamp(static_cast<int>(y - 0.5f), 0, height_ - 1);
+  const Texel* upper = &texels_[std::size_t(row) * width_ + column];
+  __builtin_prefetch(upper);
+  __builtin_prefetch(upper + (row + 1 < height_ ? width_ : 0));
 }
 
 EnvironmentSample ImageEnvironment::sample(Sample2 u) const {

@@ -26,6 +26,16 @@ struct UniformEnvironment {
   Rgb radiance{1, 1, 1};
 };
 
+/// Where a direction lies in a map.
+struct MapCoordinates {
+  float x, y;       ///< in pixels, centres at halves
+  float sin_theta;  ///< polar angle from +y
+};
+struct MapGeometry {
+  float width, height;  ///< in pixels
+  float rotation;       ///< [rad]
+};
+
 /// Lat-long image as OpenEXR defines it: u = 0.5 - atan2(x, z) / (2 pi), v = acos(y) / pi, v = 0
 /// the top row; bilinear between pixel centres, periodic in u, clamped in v.
 class ImageEnvironment {
@@ -33,8 +43,11 @@ class ImageEnvironment {
   /// `rotation_rad` turns the map about +y, positive from +z towards +x. Pixels finite.
   ImageEnvironment(const Image& image, double rotation_rad, double scale);
 
-  Rgb radiance_from(Vec3 direction) const;
-  EnvironmentValue value_from(Vec3 direction) const;
+  EnvironmentValue value_from(Vec3 direction) const { return value_at(coordinates(direction)); }
+  EnvironmentValue value_at(MapCoordinates at) const;
+  MapGeometry geometry() const;
+  /// Calls the pixels for value_at() into the cache.
+  void prefetch(float x, float y) const;
   /// Draws a direction in proportion to luminance times solid angle, a pixel cell at a time.
   EnvironmentSample sample(Sample2 u) const;
   /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order
@@ -50,11 +63,7 @@ class ImageEnvironment {
     float keep;
     std::uint32_t other;
   };
-  struct Coordinates {
-    float x, y;       ///< in pixels, centres at halves
-    float sin_theta;  ///< polar angle from +y
-  };
-  Coordinates coordinates(Vec3 direction) const;
+  MapCoordinates coordinates(Vec3 direction) const;
   Rgb bilinear(float x, float y) const;
   double cell_pdf(int x, int y, double sin_theta) const;
   void build_sampling();

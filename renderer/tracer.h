@@ -16,6 +16,8 @@
 #include <type_traits>
 
 #include "renderer/collector.h"
+#include "renderer/environment_batch.h"
+#include "renderer/microsurface_batch.h"
 #include "renderer/path.h"
 #include "renderer/sphere_connector.h"
 #include "renderer/trace_body.h"
@@ -29,6 +31,8 @@ inline constexpr double roulette_of_clear = 1.0 / 64;
 inline constexpr double roulette_of_scattered = 1.0 / 2;
 /// The same inside a clear body under a rough interface.
 inline constexpr double roulette_of_rough = 1.0 / 8;
+/// Lights that a collision with a microfacet looks for.
+inline constexpr std::uint32_t lights_of_a_collision = 8;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
 /// light that is trapped gets there, for good (a camera inside a clear body) or, in a mesh, for
 /// nearly as long (a medium of millions of bounding radii to the mean free path).
@@ -59,7 +63,8 @@ class Tracer {
         interior_(interior),
         tile_(tile),
         collector_(scene, tile, log),
-        connector_(scene, collector_, key) {}
+        connector_(scene, collector_, key),
+        lights_(smooth ? LightList() : LightList(scene.environment, key)) {}
 
   void run(std::uint32_t pass_index, std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t s = first; s < first + count; ++s) emit(pass_index, s);
@@ -69,6 +74,7 @@ class Tracer {
       boundary();
     }
     connector_.flush();
+    collect_escapes();
   }
 
  private:
@@ -100,23 +106,25 @@ class Tracer {
 
   /// Rays outside: to the environment, or through the interface into the body.
   void enter() {
-    for (std::size_t i = 0; i < arriving_.size(); ++i) {
-      Path path = arriving_[i];
-      Hit hit;
-      if (!shape_.enter(path.p, path.d, hit)) {
-        escape(path);
-        continue;
-      }
-      path.p = hit.p;
-      path.n = hit.n;
-      collector_.note("enter", path);
-      if (!count_event(path)) continue;
-      if constexpr (smooth)
-        enter_smooth(path);
-      else
-        enter_rough(path);
-    }
+    std::size_t i = 0;
+    do {
+      for (; i < arriving_.size(); ++i) arrive_outside(arriving_[i]);
+      if constexpr (!smooth) cross_rough(true);  // what it sends may arrive again
+    } while (i < arriving_.size());
     arriving_.clear();
+  }
+
+  void arrive_outside(Path path) {
+    Hit hit;
+    if (!shape_.enter(path.p, path.d, hit)) return escape(path);
+    path.p = hit.p;
+    path.n = hit.n;
+    collector_.note("enter", path);
+    if (!count_event(path)) return;
+    if constexpr (smooth)
+      enter_smooth(path);
+    else
+      enter_rough(path);
   }
 
   /// Flights inside until the boundary.
@@ -196,12 +204,14 @@ class Tracer {
     if constexpr (open) {
       for (Path& path : leaving_) {
         if (!count_event(path)) continue;
-        if constexpr (smooth)
+        if constexpr (smooth) {
           leave_smooth(path);
-        else
+          if (path.survives()) walking_.push_back(path);
+        } else {
           leave_rough(path);
-        if (path.survives()) walking_.push_back(path);
+        }
       }
+      if constexpr (!smooth) cross_rough(false);
     }
     leaving_.clear();
   }
@@ -222,11 +232,12 @@ class Tracer {
   // ---- the rough interface (tracer_rough.h)
 
   void enter_rough(Path path);
-  void leave_rough(Path& path);
-  /// From microfacet to microfacet: what escapes outwards is sent out, and one of the rays that
-  /// escape into the body stands for all of them (a reservoir of one) and becomes `path`; false if
-  /// there is none.
-  bool cross_rough(Path& path, const Frame& frame, double eta, bool from_outside);
+  void leave_rough(const Path& path);
+  /// Has the path wait at the interface, for others to cross with it.
+  void await_crossing(const Path& path, bool from_outside);
+  /// All that wait, from microfacet to microfacet: what escapes outwards is sent out, and one of
+  /// the rays that escape into the body stands for all of them.
+  void cross_rough(bool from_outside);
 
   // ---- light that leaves in all directions (tracer_diffuse.h)
 
@@ -288,22 +299,39 @@ class Tracer {
     }
   }
 
+  /// To the environment, where many look together.
   void escape(const Path& path) {
     collector_.note("escape", path);
     if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
       return collector_.collect(path, uniform->radiance, path.weight);
-    const auto& environment = std::get<ImageEnvironment>(scene_.environment);
-    if (path.pdf == 0)
-      return collector_.collect(path, environment.radiance_from(path.d), path.weight);
-    const EnvironmentValue light = environment.value_from(path.d);
-    const double share = path.pdf / (path.pdf + light.pdf);
-    if constexpr (connecting) {
-      const Rgb expected = connector_.expected(path.n);
-      collector_.collect(path, expected + (light.radiance - expected) * static_cast<float>(share),
-                         path.weight);
-    } else {
-      collector_.collect(path, light.radiance, path.weight * share);
+    const std::size_t i = escaping_.size++;
+    escaping_.x[i] = static_cast<float>(path.d.x);
+    escaping_.y[i] = static_cast<float>(path.d.y);
+    escaping_.z[i] = static_cast<float>(path.d.z);
+    escapes_[i] = {path.n, path.length, path.weight, path.pdf, path.pixel, path.tint};
+    if (escaping_.size == EnvironmentBatch::capacity) collect_escapes();
+  }
+
+  void collect_escapes() {
+    if (escaping_.size == 0) return;
+    escaping_.look_up(std::get<ImageEnvironment>(scene_.environment));
+    for (std::size_t i = 0; i < escaping_.size; ++i) {
+      const Escape& from = escapes_[i];
+      const EnvironmentValue& light = escaping_.value[i];
+      Rgb radiance = light.radiance;
+      if (from.pdf > 0) {  // it was looked for as well
+        const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
+        if constexpr (connecting) {
+          const Rgb expected = connector_.expected(from.n);
+          radiance = expected + (radiance - expected) * share;
+        } else {
+          radiance = radiance * share;
+        }
+      }
+      collector_.collect(from.pixel, from.length, from.tint,
+                         radiance * static_cast<float>(from.weight));
     }
+    escaping_.size = 0;
   }
 
   void arrive_inside(Path& path, const Hit& hit) {
@@ -333,7 +361,17 @@ class Tracer {
   Tile& tile_;
   Collector collector_;
   std::conditional_t<connecting, SphereConnector, NoConnector> connector_;
+  LightList lights_;
+  struct Escape {
+    Vec3 n;
+    double length, weight, pdf;
+    std::uint32_t pixel, tint;
+  };
+  EnvironmentBatch escaping_;
+  std::array<Escape, EnvironmentBatch::capacity> escapes_;
   std::vector<Path> arriving_, walking_, leaving_;
+  std::vector<Path> crossing_;  ///< at the rough interface
+  MicrosurfaceBatch microsurface_;
 };
 
 /// Of what the paths of a tile share, a few samples at a time.

@@ -1,8 +1,7 @@
 #pragma once
 
-// The rough boundary: from microfacet to microfacet.
+// The rough boundary: from microfacet to microfacet, many paths at a time.
 
-#include "renderer/microsurface.h"
 #include "renderer/tracer.h"
 
 namespace translucube {
@@ -10,51 +9,73 @@ namespace translucube {
 template <class Shape, class Interface, class Interior>
 void Tracer<Shape, Interface, Interior>::enter_rough(Path path) {
   if constexpr (dipole) enter_dipole(path);
-  if (!cross_rough(path, Frame(path.n), interface_.ior, true)) return;
-  if constexpr (dipole) {
-    if (interior_.clear_share == 0) return;  // a threshold relative to nothing ends nothing
-    path.weight *= interior_.clear_share;
+  await_crossing(path, true);
+}
+
+template <class Shape, class Interface, class Interior>
+void Tracer<Shape, Interface, Interior>::leave_rough(const Path& path) {
+  await_crossing(path, false);
+}
+
+template <class Shape, class Interface, class Interior>
+void Tracer<Shape, Interface, Interior>::await_crossing(const Path& path, bool from_outside) {
+  crossing_.push_back(path);
+  PathSampler& sampler = crossing_.back().sampler;
+  microsurface_.push(from_outside ? path.n : -path.n, path.d, sampler.next2(),
+                     sampler.rng().bits());
+  if (crossing_.size() == MicrosurfaceBatch::capacity) cross_rough(from_outside);
+}
+
+template <class Shape, class Interface, class Interior>
+void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
+  const double ior = interface_.ior;
+  const BatchInterface interface {
+    static_cast<float>(interface_.microfacets.alpha),
+        static_cast<float>(from_outside ? ior : 1 / ior), from_outside,
+        interface_.multiple_scattering
+  };
+  const std::uint32_t lights_each = lights_.empty() ? 0 : lights_of_a_collision;
+  std::array<Rgb, MicrosurfaceBatch::capacity> found{};
+  microsurface_.start(interface);
+  while (microsurface_.under_way()) {
+    microsurface_.collide(interface, lights_, lights_each);
+    const MicrosurfaceBatch::Lit& lit = microsurface_.lit();
+    for (std::size_t i = 0; i < lit.size; ++i) {
+      const Vec3 direction{lights_.x[lit.light[i]], lights_.y[lit.light[i]],
+                           lights_.z[lit.light[i]]};
+      if constexpr (!Shape::convex) {
+        Hit hit;
+        if (shape_.enter(crossing_[lit.slot[i]].p, direction, hit)) continue;
+      }
+      found[lit.slot[i]] += lights_.radiance[lit.light[i]] * lit.share[i];
+    }
+    const MicrosurfaceBatch::Sent& sent = microsurface_.sent();
+    for (std::size_t i = 0; i < sent.size; ++i) {
+      Path& path = crossing_[sent.slot[i]];
+      leave(path, {sent.x[i], sent.y[i], sent.z[i]}, path.weight * sent.weight[i],
+            lights_each > 0 ? sent.pdf[i] / lights_each : 0);
+    }
   }
-  if constexpr (lambertian) return_diffuse(path);
-  if constexpr (open) inward(path);
-}
-
-template <class Shape, class Interface, class Interior>
-void Tracer<Shape, Interface, Interior>::leave_rough(Path& path) {
-  if (!cross_rough(path, Frame(-path.n), 1 / interface_.ior, false)) path.weight = 0;
-}
-
-template <class Shape, class Interface, class Interior>
-bool Tracer<Shape, Interface, Interior>::cross_rough(Path& path, const Frame& frame, double eta,
-                                                     bool from_outside) {
-  const Vec3 wo = frame.to_local(-path.d);
-  if (wo.z <= 0) return false;
-  const double arriving = path.weight;
-  Rng& rng = path.sampler.rng();
-  Vec3 inward;
-  double inward_weight = 0;
-  cross_microsurface(
-      interface_, eta, wo, path.sampler,
-      [&](const MicroVertex& vertex) {
-        path.weight = arriving * vertex.weight();
-        connect(path, frame, [&](Vec3 wi) {
-          return (wi.z > 0) == from_outside ? vertex.evaluate(wi) : LobeValue{};
-        });
-      },
-      [&](Vec3 wi, double share, double pdf) {
-        const double weight = arriving * share;
-        if ((wi.z > 0) == from_outside) {
-          leave(path, frame.to_world(wi), weight, pdf);
-        } else if (open || lambertian) {
-          inward_weight += weight;
-          if (rng.uniform() * inward_weight < weight) inward = wi;
-        }
-      });
-  if (inward_weight <= 0) return false;
-  path.weight = inward_weight;
-  path.pdf = 0;
-  path.d = frame.to_world(inward);
-  return true;
+  for (std::size_t i = 0; i < crossing_.size(); ++i) {
+    Path& path = crossing_[i];
+    collector_.collect(path, found[i], path.weight);
+    if constexpr (open || lambertian) {
+      path.weight *= microsurface_.inward_weight(i);
+      if (path.weight <= 0) continue;
+      path.pdf = 0;
+      path.d = microsurface_.inward(i);
+      if (!from_outside) {
+        if (path.survives()) walking_.push_back(path);
+        continue;
+      }
+      if constexpr (dipole) path.weight *= interior_.clear_share;
+      if constexpr (lambertian) return_diffuse(path);
+      if constexpr (open) {
+        if (path.weight > 0) inward(path);
+      }
+    }
+  }
+  crossing_.clear();
 }
 
 }  // namespace translucube

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "renderer/environment.h"
+
+namespace translucube {
+
+/// Directions to be looked up in the environment together (structure of arrays).
+struct EnvironmentBatch {
+  static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
+  using Floats = std::array<float, capacity>;
+
+  std::size_t size = 0;
+  Floats x, y, z;                                ///< in: unit directions
+  std::array<EnvironmentValue, capacity> value;  ///< out
+
+  /// Of value_from(), in single precision.
+  void look_up(const ImageEnvironment& environment);
+};
+
+}  // namespace translucube

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "renderer/environment.h"
+
+namespace translucube {
+
+/// Directions drawn from the environment, from which the paths of a tile take their lights: drawing
+/// one for each path would cost more than using it. A new list for each few samples keeps the
+/// picture free of what one list lacks.
+struct LightList {
+  static constexpr std::uint32_t size = 512;  ///< a power of two
+
+  LightList() = default;
+  /// Empty where the environment is the same everywhere: there is nothing to look for.
+  LightList(const Environment& environment, std::uint64_t key);
+
+  bool empty() const { return radiance.empty(); }
+
+  // Structure of arrays: directions to the lights (unit), their densities per solid angle.
+  std::vector<float> x, y, z, pdf;
+  std::vector<Rgb> radiance;
+};
+
+}  // namespace translucube
