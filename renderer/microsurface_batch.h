@@ -60,7 +60,7 @@ class MicrosurfaceBatch {
 
   /// Begins the walks of all rays pushed.
   void start(const BatchInterface& interface);
-  bool under_way() const { return walking_.size > 0; }
+  std::size_t under_way() const { return walking_.size; }
   /// The next collision of every ray under way. `lights_each` of the list, a power of two, are
   /// looked for at each.
   void collide(const BatchInterface& interface, const LightList& lights, std::uint32_t lights_each);

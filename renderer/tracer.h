@@ -64,7 +64,8 @@ class Tracer {
         tile_(tile),
         collector_(scene, tile, log),
         connector_(scene, collector_, key),
-        lights_(smooth ? LightList() : LightList(scene.environment, key)) {}
+        lights_(smooth || !scene.next_event_estimation ? LightList()
+                                                       : LightList(scene.environment, key)) {}
 
   void run(std::uint32_t pass_index, std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t s = first; s < first + count; ++s) emit(pass_index, s);
@@ -254,7 +255,8 @@ class Tracer {
   template <class Evaluate>
   void connect(Path& path, const Frame& frame, Evaluate&& evaluate) {
     const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
-    if (environment == nullptr) return;  // the same from everywhere: nothing to look for
+    // The same from everywhere: nothing to look for.
+    if (environment == nullptr || !scene_.next_event_estimation) return;
     const EnvironmentSample light = environment->sample(path.sampler.next2());
     ++tile_.counters.connections;
     const LobeValue value = evaluate(frame.to_local(light.direction));
@@ -319,7 +321,7 @@ class Tracer {
       const Escape& from = escapes_[i];
       const EnvironmentValue& light = escaping_.value[i];
       Rgb radiance = light.radiance;
-      if (from.pdf > 0) {  // it was looked for as well
+      if (from.pdf > 0 && scene_.next_event_estimation) {  // it was looked for as well
         const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
         if constexpr (connecting) {
           const Rgb expected = connector_.expected(from.n);

@@ -37,7 +37,8 @@ void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
   const std::uint32_t lights_each = lights_.empty() ? 0 : lights_of_a_collision;
   std::array<Rgb, MicrosurfaceBatch::capacity> found{};
   microsurface_.start(interface);
-  while (microsurface_.under_way()) {
+  while (microsurface_.under_way() > 0) {
+    tile_.counters.connections += lights_each * microsurface_.under_way();
     microsurface_.collide(interface, lights_, lights_each);
     const MicrosurfaceBatch::Lit& lit = microsurface_.lit();
     for (std::size_t i = 0; i < lit.size; ++i) {
