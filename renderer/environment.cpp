@@ -9,6 +9,12 @@ namespace translucube {
 
 using std::numbers::pi;
 
+namespace {
+
+constexpr int block_size = 16, cells_of_a_block = block_size * block_size;
+
+}  // namespace
+
 ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, double scale)
     : width_(image.width), height_(image.height), rotation_rad_(rotation_rad) {
   texels_.resize(std::size_t(width_) * height_);
@@ -48,21 +54,24 @@ void ImageEnvironment::build_sampling() {
     weight[i] *= static_cast<double>(n) / total;
     texels_[i].weight = static_cast<float>(weight[i]);
   }
-  alias_.resize(n);
-  std::vector<std::uint32_t> small, large;
-  for (std::uint32_t i = 0; i < n; ++i) (weight[i] < 1 ? small : large).push_back(i);
-  while (!small.empty() && !large.empty()) {
-    const std::uint32_t s = small.back(), l = large.back();
-    small.pop_back();
-    alias_[s] = {static_cast<float>(weight[s]), l};
-    weight[l] -= 1 - weight[s];
-    if (weight[l] < 1) {
-      large.pop_back();
-      small.push_back(l);
+  blocks_across_ = (width_ + block_size - 1) / block_size;
+  const int blocks_down = (height_ + block_size - 1) / block_size;
+  blocks_.reserve(std::size_t(blocks_across_) * blocks_down);
+  cells_.reserve(blocks_.capacity() * cells_of_a_block);
+  double all = 0;
+  for (int by = 0; by < blocks_down; ++by)
+    for (int bx = 0; bx < blocks_across_; ++bx) {
+      std::array<double, cells_of_a_block> sums{};
+      double sum = 0;
+      for (int i = 0; i < cells_of_a_block; ++i) {
+        const int x = bx * block_size + i % block_size, y = by * block_size + i / block_size;
+        if (x < width_ && y < height_) sum += weight[std::size_t(y) * width_ + x];
+        sums[i] = sum;
+      }
+      for (const double s : sums) cells_.push_back(sum > 0 ? static_cast<float>(s / sum) : 0);
+      blocks_.push_back(all += sum / static_cast<double>(n));
     }
-  }
-  for (std::uint32_t i : small) alias_[i] = {1, i};
-  for (std::uint32_t i : large) alias_[i] = {1, i};
+  for (double& sum : blocks_) sum /= all;
 }
 
 namespace {
@@ -167,23 +176,34 @@ void ImageEnvironment::prefetch(float x, float y) const {
   __builtin_prefetch(upper + (row + 1 < height_ ? width_ : 0));
 }
 
+MapCoordinates ImageEnvironment::draw(Sample2 u) const {
+  const auto block = static_cast<std::size_t>(
+      std::upper_bound(blocks_.begin(), blocks_.end() - 1, u.u) - blocks_.begin());
+  const double before = block > 0 ? blocks_[block - 1] : 0;
+  const float rest = std::fmin(static_cast<float>((u.u - before) / (blocks_[block] - before)),
+                               0x1.fffffep-1f);
+  const float* cells = &cells_[block * cells_of_a_block];
+  const auto cell =
+      static_cast<int>(std::upper_bound(cells, cells + cells_of_a_block - 1, rest) - cells);
+  const float below = cell > 0 ? cells[cell - 1] : 0;
+  const auto bx = static_cast<int>(block) % blocks_across_,
+             by = static_cast<int>(block) / blocks_across_;
+  const float x = static_cast<float>(bx * block_size + cell % block_size) +
+                  std::clamp((rest - below) / (cells[cell] - below), 0.0f, 1.0f);
+  const float y =
+      static_cast<float>(by * block_size + cell / block_size) + static_cast<float>(u.v);
+  return {x, y, std::sin(static_cast<float>(pi) / static_cast<float>(height_) * y)};
+}
+
+Vec3 ImageEnvironment::direction(MapCoordinates at) const {
+  const double azimuth = 2 * pi * (0.5 - at.x / width_) + rotation_rad_;
+  return {at.sin_theta * std::sin(azimuth), std::cos(pi * at.y / height_),
+          at.sin_theta * std::cos(azimuth)};
+}
+
 EnvironmentSample ImageEnvironment::sample(Sample2 u) const {
-  const double position = u.u * static_cast<double>(alias_.size());
-  auto cell = std::min(static_cast<std::size_t>(position), alias_.size() - 1);
-  double fraction = position - static_cast<double>(cell);
-  const Alias& alias = alias_[cell];
-  if (fraction < alias.keep) {
-    fraction /= alias.keep;
-  } else {
-    fraction = (fraction - alias.keep) / (1 - alias.keep);
-    cell = alias.other;
-  }
-  const int x = static_cast<int>(cell % width_), y = static_cast<int>(cell / width_);
-  const double px = x + std::fmin(fraction, 1.0), py = y + u.v;
-  const double theta = pi * py / height_, azimuth = 2 * pi * (0.5 - px / width_) + rotation_rad_;
-  const double sin_theta = std::sin(theta);
-  return {{sin_theta * std::sin(azimuth), std::cos(theta), sin_theta * std::cos(azimuth)},
-          {bilinear(static_cast<float>(px), static_cast<float>(py)), cell_pdf(x, y, sin_theta)}};
+  const MapCoordinates at = draw(u);
+  return {direction(at), value_at(at)};
 }
 
 }  // namespace translucube

@@ -48,8 +48,12 @@ class ImageEnvironment {
   MapGeometry geometry() const;
   /// Calls the pixels for value_at() into the cache.
   void prefetch(float x, float y) const;
-  /// Draws a direction in proportion to luminance times solid angle, a pixel cell at a time.
+  /// Draws a direction in proportion to luminance times solid angle, a pixel cell at a time; nearby
+  /// u.u give nearby directions, so that stratified numbers give stratified light.
   EnvironmentSample sample(Sample2 u) const;
+  /// The same, in the map.
+  MapCoordinates draw(Sample2 u) const;
+  Vec3 direction(MapCoordinates at) const;
   /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order
   /// (Ramamoorthi and Hanrahan 2001): within a few percent, and possibly negative under a hard sun.
   Rgb irradiance(Vec3 n) const;
@@ -57,11 +61,6 @@ class ImageEnvironment {
  private:
   struct Texel {
     float r, g, b, weight;  ///< weight: probability of the pixel cell x number of cells
-  };
-  /// Walker's alias table (Vose 1991).
-  struct Alias {
-    float keep;
-    std::uint32_t other;
   };
   MapCoordinates coordinates(Vec3 direction) const;
   Rgb bilinear(float x, float y) const;
@@ -72,7 +71,11 @@ class ImageEnvironment {
   int width_, height_;
   double rotation_rad_;
   std::vector<Texel> texels_;
-  std::vector<Alias> alias_;
+  // The chances of the cells, block by block of the map and summed up: over the blocks, and within
+  // each (row by row, 1 at its end).
+  int blocks_across_ = 0;
+  std::vector<double> blocks_;
+  std::vector<float> cells_;
   std::array<Rgb, 9> irradiance_;  ///< coefficients of the polynomials of quadratic_basis()
 };
 

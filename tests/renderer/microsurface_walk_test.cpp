@@ -6,8 +6,10 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "renderer/microsurface.h"
+#include "renderer/microsurface_batch.h"
 #include "tests/support/chi2.h"
 
 namespace translucube::test {
@@ -67,16 +69,37 @@ struct Histogram {
   double variance_of_mean(int i) const { return (squares[i] / walks - mean(i) * mean(i)) / walks; }
 };
 
+/// The same with others of its kind, in SIMD.
+void add_batch(Histogram& histogram, double alpha, double eta, Vec3 wo, std::uint64_t key) {
+  std::array<std::array<double, bins>, MicrosurfaceBatch::capacity> walks{};
+  auto batch = std::make_unique<MicrosurfaceBatch>();
+  Rng rng(key);
+  for (std::size_t i = 0; i < walks.size(); ++i)
+    batch->push({0, 0, 1}, -wo, rng.uniform2(), rng.bits());
+  const BatchInterface interface { static_cast<float>(alpha), static_cast<float>(eta) };
+  batch->start(interface);
+  while (batch->under_way() > 0) {
+    batch->collide(interface, LightList(), 0);
+    const MicrosurfaceBatch::Sent& sent = batch->sent();
+    for (std::size_t i = 0; i < sent.size; ++i)
+      walks[sent.slot[i]][bin_of({sent.x[i], sent.y[i], sent.z[i]})] += sent.weight[i];
+  }
+  for (std::size_t i = 0; i < walks.size(); ++i) {
+    if (batch->inward_weight(i) > 0) walks[i][bin_of(batch->inward(i))] += batch->inward_weight(i);
+    histogram.add(walks[i]);
+  }
+}
+
 TEST(Microsurface, SendsLightWhereThePlainRandomWalkDoes) {
   constexpr int walks = 60'000;
   const std::array alphas{0.1, 0.4, 1.0};
   const std::array etas{1.5, 1 / 1.5}, cosines{0.9, 0.3};
-  const double family = bins * alphas.size() * etas.size() * cosines.size();
+  const double family = 2 * bins * alphas.size() * etas.size() * cosines.size();
   for (const double alpha : alphas)
     for (const double eta : etas)
       for (const double mu : cosines) {
         const Vec3 wo{std::sqrt(1 - mu * mu), 0, mu};
-        Histogram plain, ours;
+        Histogram plain, ours, batched;
         for (int i = 0; i < walks; ++i) {
           Rng rng(hash_combine(11, i));
           std::array<double, bins> walk{};
@@ -90,14 +113,19 @@ TEST(Microsurface, SendsLightWhereThePlainRandomWalkDoes) {
               [&](Vec3 wi, double weight, double) { walk[bin_of(wi)] += weight; });
           ours.add(walk);
         }
-        for (int i = 0; i < bins; ++i) {
-          const double error = std::sqrt(plain.variance_of_mean(i) + ours.variance_of_mean(i));
-          if (plain.mean(i) * walks < 30) continue;  // too few to be normal
-          const double z = (ours.mean(i) - plain.mean(i)) / error;
-          EXPECT_GT(std::erfc(std::fabs(z) / std::sqrt(2.0)), sidak(static_cast<int>(family)))
-              << "alpha " << alpha << " eta " << eta << " mu " << mu << " bin " << i << ": "
-              << ours.mean(i) << " for " << plain.mean(i) << " +- " << error;
-        }
+        while (batched.walks < walks)
+          add_batch(batched, alpha, eta, wo, hash_combine(13, batched.walks));
+        for (const Histogram* histogram : {&ours, &batched})
+          for (int i = 0; i < bins; ++i) {
+            const double error =
+                std::sqrt(plain.variance_of_mean(i) + histogram->variance_of_mean(i));
+            if (plain.mean(i) * walks < 30) continue;  // too few to be normal
+            const double z = (histogram->mean(i) - plain.mean(i)) / error;
+            EXPECT_GT(std::erfc(std::fabs(z) / std::sqrt(2.0)), sidak(static_cast<int>(family)))
+                << (histogram == &ours ? "one by one" : "in batches") << " alpha " << alpha
+                << " eta " << eta << " mu " << mu << " bin " << i << ": " << histogram->mean(i)
+                << " for " << plain.mean(i) << " +- " << error;
+          }
       }
 }
 
