@@ -7,66 +7,11 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "renderer/microsurface_batch.cpp"
 #include <hwy/foreach_target.h>
-#include "renderer/simd.h"
+#include "renderer/microfacet_simd.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace translucube::HWY_NAMESPACE {
-
-constexpr float pi_f = 3.14159265f;
-
-/// microfacet.h's Ggx, and the rates and escapes of microsurface.cpp.
-struct Facets {
-  Real alpha;
-
-  HWY_INLINE Real projected_area(Vector w) const {
-    const Real q = alpha * alpha * fma(w.x, w.x, w.y * w.y), root = sqrt(fma(w.z, w.z, q));
-    return Real(0.5f) * select(w.z > 0, w.z + root, q / (root - w.z));
-  }
-  HWY_INLINE Real density(Vector m) const {
-    const Real a2 = alpha * alpha, q = fma(m.z, m.z, fma(m.x, m.x, m.y * m.y) / a2);
-    return Real(1) / (Real(pi_f) * a2 * q * q);
-  }
-  HWY_INLINE Vector sample_visible(Vector wo, Real u, Real v) const {
-    const Vector w = normalize({alpha * wo.x, alpha * wo.y, wo.z});
-    const Real phi = Real(2 * pi_f) * u, z = fma(Real(1) - v, Real(1) + w.z, -w.z);
-    const Real r = sqrt(max(0, fnma(z, z, 1)));
-    return normalize(
-        {alpha * fma(r, cos(phi), w.x), alpha * fma(r, sin(phi), w.y), max(z + w.z, Real(1e-15f))});
-  }
-  HWY_INLINE Real collision_rate(Vector d) const {
-    return projected_area(-d) / max(abs(d.z), Real(1e-12f));
-  }
-  HWY_INLINE Real escape(Vector d, Real depth) const {
-    return or_zero(d.z > 0, exp(-(collision_rate(d) * depth)));
-  }
-};
-
-HWY_INLINE Real depth_beyond(Real depth) { return -log(max(-expm1(-depth), Real(1e-30f))); }
-
-/// One side of the interface.
-struct Side {
-  Real eta, inverse_eta;
-
-  struct Refraction {
-    Real reflectance, cos_t;
-  };
-  HWY_INLINE Refraction refraction(Real cos_o) const {
-    const Real cos2_t = fnma(fnma(cos_o, cos_o, 1), inverse_eta * inverse_eta, 1);
-    const Real cos_t = sqrt(max(0, cos2_t));
-    const Real s = fnma(eta, cos_t, cos_o) / fma(eta, cos_t, cos_o);
-    const Real p = (eta * cos_o - cos_t) / fma(eta, cos_o, cos_t);
-    return {select(cos2_t > 0, Real(0.5f) * fma(s, s, p * p), 1), cos_t};
-  }
-  /// |d m / d wi| of refraction; wi_m < 0.
-  HWY_INLINE Real refraction_jacobian(Real w_m, Real wi_m) const {
-    const Real denominator = fma(eta, wi_m, w_m);
-    // Kept off zero, where the indices are the same and nothing is refracted.
-    return eta * eta * -wi_m / max(denominator * denominator, Real(1e-20f));
-  }
-};
-
-HWY_INLINE Vector mirrored(Vector w) { return {w.x, w.y, -w.z}; }
 
 void Collide(const BatchInterface& interface, const LightList& lights, std::uint32_t lights_each,
              MicrosurfaceBatch::Walking& rays, MicrosurfaceBatch::Sent& sent,
@@ -95,6 +40,8 @@ void Collide(const BatchInterface& interface, const LightList& lights, std::uint
     // Light from a few directions.
     const Real light_depth = select(outside, depth, beyond);
     const Real bend = select(outside, 1, here.eta);
+    const Real connected = load(&rays.connected[i]);
+    const Mask sought_here = both(present, connected < 1);
     Bits light = random.bits();
     for (std::uint32_t k = 0; k < lights_each; ++k) {
       light = hn::And(hn::Add(light, hn::Set(DU(), LightList::size / lights_each)),
@@ -115,7 +62,7 @@ void Collide(const BatchInterface& interface, const LightList& lights, std::uint
       const Real share = weight * part * escape * pdf / (sought + pdf);
       const Mask seen = interface.from_outside ? wi_first.z > 0 : wi_first.z < 0;
       const Mask possible = both(w_m > 0, hn::Or(outside, wi_m < 0));
-      const Mask found = both(both(present, seen), both(possible, share > 0));
+      const Mask found = both(both(sought_here, seen), both(possible, share > 0));
       pack(slot, found, &lit.slot[lit.size]);
       pack(light, found, &lit.light[lit.size]);
       pack(share, found, &lit.share[lit.size]);
@@ -129,8 +76,7 @@ void Collide(const BatchInterface& interface, const LightList& lights, std::uint
     const Side::Refraction crossing = here.refraction(w_m);
     const Real reflectance = select(met, crossing.reflectance, 1);
     const Vector up = select(met, fma(Real(2) * w_m, m, -w), w);
-    const Vector down =
-        fma(fma(w_m, here.inverse_eta, -crossing.cos_t), m, -(here.inverse_eta * w));
+    const Vector down = here.refract(w, m, w_m, crossing.cos_t);
     const Real up_escape = or_zero(met, facets.escape(up, depth));
     const Real down_escape = or_zero(reflectance < 1, facets.escape(mirrored(down), beyond));
     const Real up_share = reflectance * up_escape;
@@ -150,6 +96,7 @@ void Collide(const BatchInterface& interface, const LightList& lights, std::uint
     pack(density *
              select(outside, Real(0.25f) / w_m, here.refraction_jacobian(w_m, -crossing.cos_t)),
          leaves, &sent.pdf[sent.size]);
+    pack(connected, leaves, &sent.connected[sent.size]);
     sent.size += hn::CountTrue(D(), leaves);
 
     // What goes into the body: one ray for all (a reservoir of one).
@@ -207,6 +154,7 @@ void Collide(const BatchInterface& interface, const LightList& lights, std::uint
     pack(inward.y, goes_on, &rays.inward_y[kept]);
     pack(inward.z, goes_on, &rays.inward_z[kept]);
     pack(inward_weight, goes_on, &rays.inward_weight[kept]);
+    pack(Real(0), goes_on, &rays.connected[kept]);
     kept += hn::CountTrue(D(), goes_on);
   }
   rays.size = kept;
@@ -238,7 +186,7 @@ namespace translucube {
 HWY_EXPORT(Start);
 HWY_EXPORT(Collide);
 
-void MicrosurfaceBatch::push(Vec3 n, Vec3 d, Sample2 u, std::uint64_t key) {
+void MicrosurfaceBatch::push(Vec3 n, Vec3 d, Sample2 u, std::uint64_t key, bool connected) {
   const std::size_t i = walking_.size++;
   walking_.slot[i] = static_cast<std::uint32_t>(i);
   walking_.key_low[i] = static_cast<std::uint32_t>(key);
@@ -254,6 +202,7 @@ void MicrosurfaceBatch::push(Vec3 n, Vec3 d, Sample2 u, std::uint64_t key) {
   walking_.u[i] = static_cast<float>(u.u);
   walking_.v[i] = static_cast<float>(u.v);
   walking_.inward_weight[i] = 0;
+  walking_.connected[i] = connected ? 1.0f : 0.0f;
 }
 
 void MicrosurfaceBatch::start(const BatchInterface& interface) {

@@ -38,7 +38,8 @@ class MicrosurfaceBatch {
     Floats w_x, w_y, w_z;  ///< back along the ray, local, on the side where it is (side 1: arrival)
     Floats side;           ///< 1 on the side of arrival, -1 beyond
     Floats depth, weight;
-    Floats u, v;  ///< the numbers of the next microfacet's normal
+    Floats u, v;       ///< the numbers of the next microfacet's normal
+    Floats connected;  ///< 1 where the light of this collision was looked for before, else 0
     Floats inward_x, inward_y, inward_z, inward_weight;  ///< the reservoir, world
   };
   /// Rays that left to the outside.
@@ -46,6 +47,7 @@ class MicrosurfaceBatch {
     std::size_t size = 0;
     Integers slot;
     Floats x, y, z, weight, pdf;
+    Floats connected;  ///< of the collision
   };
   /// Light that was found.
   struct Lit {
@@ -55,8 +57,9 @@ class MicrosurfaceBatch {
   };
 
   /// A ray along `d` that meets an interface with normal `n` on its side; `u` draws the first
-  /// normal. Its slot is the number of those pushed before.
-  void push(Vec3 n, Vec3 d, Sample2 u, std::uint64_t key);
+  /// normal. Its slot is the number of those pushed before. `connected`: the light of the first
+  /// collision was looked for before.
+  void push(Vec3 n, Vec3 d, Sample2 u, std::uint64_t key, bool connected = false);
 
   /// Begins the walks of all rays pushed.
   void start(const BatchInterface& interface);

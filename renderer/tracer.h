@@ -19,6 +19,7 @@
 #include "renderer/environment_batch.h"
 #include "renderer/microsurface_batch.h"
 #include "renderer/path.h"
+#include "renderer/rough_connector.h"
 #include "renderer/sphere_connector.h"
 #include "renderer/trace_body.h"
 
@@ -49,7 +50,9 @@ class Tracer {
   static constexpr bool dense = std::is_same_v<Interior, DensePigmentInterior>;
   static constexpr bool dipole = std::is_same_v<Interior, DipoleInterior>;
   /// Whether scattering vertices may look for light through the boundary.
-  static constexpr bool connecting = smooth && scattering && std::is_same_v<Shape, Sphere>;
+  static constexpr bool connecting = scattering && std::is_same_v<Shape, Sphere>;
+  using Connector = std::conditional_t<!connecting, NoConnector,
+                                       std::conditional_t<smooth, SphereConnector, RoughConnector>>;
   /// Whether light goes on inside the body.
   static constexpr bool open =
       scattering || dense || dipole || std::is_same_v<Interior, ClearInterior>;
@@ -63,9 +66,8 @@ class Tracer {
         interior_(interior),
         tile_(tile),
         collector_(scene, tile, log),
-        connector_(scene, collector_, key),
-        lights_(smooth || !scene.next_event_estimation ? LightList()
-                                                       : LightList(scene.environment, key)) {}
+        lights_(lights_of(scene, key)),
+        connector_(make_connector(scene, key)) {}
 
   void run(std::uint32_t pass_index, std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t s = first; s < first + count; ++s) emit(pass_index, s);
@@ -103,6 +105,17 @@ class Tracer {
           inward(path);
         }
       }
+  }
+
+  static LightList lights_of(const Scene& scene, std::uint64_t key) {
+    return smooth || !scene.next_event_estimation ? LightList() : LightList(scene.environment, key);
+  }
+
+  Connector make_connector(const Scene& scene, std::uint64_t key) {
+    if constexpr (connecting && !smooth)
+      return Connector(scene, collector_, lights_);
+    else
+      return Connector(scene, collector_, key);
   }
 
   /// Rays outside: to the environment, or through the interface into the body.
@@ -239,6 +252,8 @@ class Tracer {
   /// All that wait, from microfacet to microfacet: what escapes outwards is sent out, and one of
   /// the rays that escape into the body stands for all of them.
   void cross_rough(bool from_outside);
+  /// What left at the collisions just made.
+  void send_out(std::uint32_t lights_each);
 
   // ---- light that leaves in all directions (tracer_diffuse.h)
 
@@ -323,7 +338,7 @@ class Tracer {
       Rgb radiance = light.radiance;
       if (from.pdf > 0 && scene_.next_event_estimation) {  // it was looked for as well
         const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
-        if constexpr (connecting) {
+        if constexpr (connecting && smooth) {
           const Rgb expected = connector_.expected(from.n);
           radiance = expected + (radiance - expected) * share;
         } else {
@@ -362,8 +377,8 @@ class Tracer {
   const Interior& interior_;
   Tile& tile_;
   Collector collector_;
-  std::conditional_t<connecting, SphereConnector, NoConnector> connector_;
-  LightList lights_;
+  LightList lights_;  ///< of the rough interface
+  Connector connector_;
   struct Escape {
     Vec3 n;
     double length, weight, pdf;

@@ -21,8 +21,8 @@ template <class Shape, class Interface, class Interior>
 void Tracer<Shape, Interface, Interior>::await_crossing(const Path& path, bool from_outside) {
   crossing_.push_back(path);
   PathSampler& sampler = crossing_.back().sampler;
-  microsurface_.push(from_outside ? path.n : -path.n, path.d, sampler.next2(),
-                     sampler.rng().bits());
+  microsurface_.push(from_outside ? path.n : -path.n, path.d, sampler.next2(), sampler.rng().bits(),
+                     connecting && !from_outside && path.phase > 0);
   if (crossing_.size() == MicrosurfaceBatch::capacity) cross_rough(from_outside);
 }
 
@@ -50,12 +50,7 @@ void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
       }
       found[lit.slot[i]] += lights_.radiance[lit.light[i]] * lit.share[i];
     }
-    const MicrosurfaceBatch::Sent& sent = microsurface_.sent();
-    for (std::size_t i = 0; i < sent.size; ++i) {
-      Path& path = crossing_[sent.slot[i]];
-      leave(path, {sent.x[i], sent.y[i], sent.z[i]}, path.weight * sent.weight[i],
-            lights_each > 0 ? sent.pdf[i] / lights_each : 0);
-    }
+    send_out(lights_each);
   }
   for (std::size_t i = 0; i < crossing_.size(); ++i) {
     Path& path = crossing_[i];
@@ -64,6 +59,7 @@ void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
       path.weight *= microsurface_.inward_weight(i);
       if (path.weight <= 0) continue;
       path.pdf = 0;
+      path.phase = 0;
       path.d = microsurface_.inward(i);
       if (!from_outside) {
         if (path.survives()) walking_.push_back(path);
@@ -77,6 +73,24 @@ void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
     }
   }
   crossing_.clear();
+}
+
+template <class Shape, class Interface, class Interior>
+void Tracer<Shape, Interface, Interior>::send_out(std::uint32_t lights_each) {
+  const MicrosurfaceBatch::Sent& sent = microsurface_.sent();
+  const auto direction = [&](std::size_t i) { return Vec3{sent.x[i], sent.y[i], sent.z[i]}; };
+  const float* ways = nullptr;
+  if constexpr (connecting) {
+    for (std::size_t i = 0; i < sent.size; ++i)
+      if (sent.connected[i] > 0)
+        connector_.push_way(crossing_[sent.slot[i]], direction(i), sent.pdf[i]);
+    ways = connector_.weigh_ways().data();
+  }
+  for (std::size_t i = 0; i < sent.size; ++i) {
+    Path& path = crossing_[sent.slot[i]];
+    const double pdf = sent.connected[i] > 0 ? *ways++ : sent.pdf[i] / lights_each;
+    leave(path, direction(i), path.weight * sent.weight[i], lights_each > 0 ? pdf : 0);
+  }
 }
 
 }  // namespace translucube

@@ -1,0 +1,61 @@
+#pragma once
+
+// Scattering vertices under a rough sphere look for light through the boundary
+// (rough_exit_batch.h): each connects to a light of the tile's list by one collision with a
+// microfacet, weighted by the balance heuristic (Veach 1995) against the walk that comes there by
+// itself. What collides more often on its way out looks for light at the collisions.
+
+#include <array>
+
+#include "renderer/collector.h"
+#include "renderer/light_list.h"
+#include "renderer/rough_exit_batch.h"
+
+namespace translucube {
+
+class RoughConnector {
+ public:
+  /// The scene: a rough sphere with scatterers inside. Nothing is looked for if the list is empty.
+  RoughConnector(const Scene& scene, Collector& collector, const LightList& lights);
+
+  bool active() const { return !lights_.empty(); }
+  /// Mean free paths below the surface where vertices are visited one by one: little light goes
+  /// straight out from deeper ones.
+  double margin() const { return active() ? 3 : 0; }
+
+  /// From path.p, where it comes along path.d; before its new direction is chosen.
+  void connect(Path& path);
+  /// Collects what is under way.
+  void flush();
+
+  /// A path straight from path.vertex to path.p, where it leaves towards `light` with a density
+  /// `pdf` by its first collision.
+  void push_way(const Path& path, Vec3 light, double pdf);
+  /// For the ways pushed, in their order: the density with which they go on towards the light over
+  /// the chance that connect() looked there; 0: it never does. Forgets them.
+  const RoughWays::Floats& weigh_ways();
+
+ private:
+  /// Fall of the chance to connect with the optical depth.
+  static constexpr double falling = 0.5;
+
+  struct Waiting {
+    double length;
+    float weight;
+    std::uint32_t pixel, light;
+  };
+
+  double chance(Vec3 p) const;
+  void place(RoughExitBatch& batch, Vec3 p, Vec3 d, Vec3 light) const;
+
+  Collector& collector_;
+  const LightList& lights_;
+  Medium medium_;
+  RoughExitMedium exit_;
+  RoughConnections connections_;
+  std::array<Waiting, RoughExitBatch::capacity> waiting_;
+  RoughWays ways_;
+  RoughWays::Floats walked_;  ///< the ways' densities, by the walk, over the chance to connect
+};
+
+}  // namespace translucube

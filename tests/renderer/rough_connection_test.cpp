@@ -1,0 +1,130 @@
+// Light found through the rough boundary of a sphere: the densities are densities, and what is
+// found with them is what the walk alone finds.
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "renderer/rough_exit_batch.h"
+#include "tests/support/scenes.h"
+
+namespace translucube::test {
+namespace {
+
+TEST(RoughConnections, TheDensityOfAWayIntegratesToOne) {
+  // Over all directions inside, but for the ways through facets that send them up again.
+  Rng rng(1);
+  for (const float alpha : {0.25f, 0.6f})
+    for (const double rho : {0.3, 0.9, 0.999}) {
+      const Vec3 up = sample_isotropic(rng);
+      const Vec3 light = normalize(up + 0.7 * sample_isotropic(rng));
+      double sum = 0, squares = 0;
+      int ways = 0;
+      auto batch = std::make_unique<RoughWays>();
+      for (int repeat = 0; repeat < 12000; ++repeat) {
+        batch->size = RoughExitBatch::capacity;
+        for (std::size_t i = 0; i < batch->size; ++i) {
+          const Vec3 d = sample_isotropic(rng);
+          batch->up_x[i] = float(up.x), batch->up_y[i] = float(up.y), batch->up_z[i] = float(up.z);
+          batch->depth2[i] = float(1 - rho * rho);
+          batch->light_x[i] = float(light.x), batch->light_y[i] = float(light.y);
+          batch->light_z[i] = float(light.z);
+          batch->d_x[i] = float(d.x), batch->d_y[i] = float(d.y), batch->d_z[i] = float(d.z);
+        }
+        densities_of({1.5f, alpha, 1, 0}, *batch);
+        for (std::size_t i = 0; i < batch->size; ++i, ++ways) {
+          const double ratio = 4 * M_PI * batch->density[i];
+          sum += ratio;
+          squares += ratio * ratio;
+        }
+      }
+      const double mean = sum / ways;
+      const double error = std::sqrt((squares / ways - mean * mean) / ways);
+      EXPECT_NEAR(mean, 1, 4 * error) << "alpha " << alpha << " rho " << rho;
+      EXPECT_LT(error, 0.01);
+    }
+}
+
+TEST(RoughConnections, InstructionSetsAgree) {
+  auto batch = std::make_unique<RoughConnections>();
+  Rng rng(2);
+  for (std::size_t i = 0; i < RoughExitBatch::capacity; ++i) {
+    const Vec3 up = sample_isotropic(rng), light = sample_isotropic(rng), d = sample_isotropic(rng);
+    const double rho = 1 - 0.5 * std::pow(rng.uniform(), 3);
+    batch->up_x[i] = float(up.x), batch->up_y[i] = float(up.y), batch->up_z[i] = float(up.z);
+    batch->depth2[i] = float(1 - rho * rho);
+    batch->light_x[i] = float(light.x), batch->light_y[i] = float(light.y);
+    batch->light_z[i] = float(light.z);
+    batch->d_x[i] = float(d.x), batch->d_y[i] = float(d.y), batch->d_z[i] = float(d.z);
+    batch->light_pdf[i] = 0.1f;
+    batch->key_low[i] = static_cast<std::uint32_t>(rng.bits());
+  }
+  batch->size = RoughExitBatch::capacity;
+  std::map<std::string, RoughExitBatch::Floats> shares;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
+    connect_rough({1.5f, 0.2f, 3, 0.5f}, *batch);
+    shares[hwy::TargetName(target)] = batch->share;
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().DeInit();
+  }
+  EXPECT_GE(shares.size(), 2u);
+  // The same fused operations: the same request gives the same bits on both.
+  if (shares.contains("AVX2") && shares.contains("AVX3")) {
+    EXPECT_EQ(shares["AVX2"], shares["AVX3"]);
+  }
+  double sum = 0;
+  for (const float share : shares.begin()->second) sum += share;
+  EXPECT_GT(sum, 1);
+}
+
+/// A rough body in light from one side, so that near and far ways out differ.
+Scene half_lit(double alpha, double sigma_s, double g, double ior, bool above) {
+  Scene scene = body(Sphere{}, material(ior, alpha, sigma_s, g));
+  scene.environment = half_space_light(above);
+  scene.lanes = {RgbLane{{0.3f, 0.3f, 0.3f}}};
+  look_from_afar(scene, 0.95, 32);
+  return scene;
+}
+
+TEST(RoughConnections, FindWhatTheWalkAloneFinds) {
+  std::uint64_t seed = 1;
+  for (const double alpha : {0.03, 0.2, 0.8})
+    for (const double sigma_s : {0.3, 4.0, 40.0}) {
+      const double g = seed % 4 == 1 ? 0.7 : 0, ior = seed % 6 < 3 ? 1.2 : 2;
+      Scene scene = half_lit(alpha, sigma_s, g, ior, seed % 4 > 1);
+      scene.seed = ++seed;
+      const Film connected = trace(scene, 128);
+      scene.next_event_estimation = false;
+      scene.seed = ++seed;
+      const Film walked = trace(scene, 192);
+      EXPECT_GT(connected.counters.connections, 0u);
+      const Estimate a = image_mean(connected), b = image_mean(walked);
+      const double error = std::hypot(a.standard_error, b.standard_error);
+      EXPECT_NEAR(a.mean, b.mean, 4 * error)
+          << "alpha " << alpha << " sigma_s " << sigma_s << " g " << g << " ior " << ior;
+      EXPECT_LT(error, 0.02 * b.mean);
+    }
+}
+
+TEST(RoughConnections, OfAWhiteImageKeepTheFurnace) {
+  Image image(16, 8);
+  for (float& p : image.pixels) p = 1;
+  for (const double alpha : {0.05, 0.5})
+    for (const double sigma_s : {1.0, 30.0}) {
+      Scene scene = body(Sphere{}, material(1.5, alpha, sigma_s));
+      scene.environment = ImageEnvironment(image, 0, 1);
+      look_from_afar(scene, 0.7, 32);
+      const Estimate e = image_mean(trace(scene, 512));
+      EXPECT_NEAR(e.mean, 1, 3 * e.standard_error) << "alpha " << alpha << " sigma_s " << sigma_s;
+      EXPECT_LT(e.standard_error, 1.5e-3);
+    }
+}
+
+}  // namespace
+}  // namespace translucube::test
