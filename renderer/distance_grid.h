@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
+#include <new>
 
 #include "renderer/vec.h"
 
@@ -20,14 +22,18 @@ class DistanceGrid {
  public:
   explicit DistanceGrid(int cells)
       : cells_(cells),
-        samples_(std::make_unique<std::atomic<float>[]>(std::size_t(cells) * cells * cells)) {}
+        samples_(
+            static_cast<float*>(std::calloc(std::size_t(cells) * cells * cells, sizeof(float)))) {
+    if (samples_ == nullptr) throw std::bad_alloc();
+  }
 
   /// For p anywhere: beyond the cube the nearest cell answers. `nearest(center)` returns a distance
   /// that is found there, of which `keen` times is known to be free.
   template <class Nearest>
   DistanceBounds at(Vec3 p, double keen, Nearest&& nearest) const {
     const int x = index(p.x), y = index(p.y), z = index(p.z);
-    std::atomic<float>& sample = samples_[x + std::size_t(cells_) * (y + std::size_t(cells_) * z)];
+    const std::atomic_ref sample(
+        samples_.get()[x + std::size_t(cells_) * (y + std::size_t(cells_) * z)]);
     const Vec3 center{coordinate(x), coordinate(y), coordinate(z)};
     float found = sample.load(std::memory_order_relaxed);
     if (found == 0) {
@@ -48,7 +54,11 @@ class DistanceGrid {
   double coordinate(int index) const { return (2 * index + 1.0) / cells_ - 1; }
 
   int cells_;
-  std::unique_ptr<std::atomic<float>[]> samples_;  ///< 0: not yet taken
+  struct Free {
+    void operator()(float* samples) const { std::free(samples); }
+  };
+  /// 0: not yet taken. From calloc, whose pages take no memory until they are written.
+  std::unique_ptr<float[], Free> samples_;
 };
 
 }  // namespace translucube

@@ -45,6 +45,7 @@ struct MeshGeometry {
   Device device;
   EmbreeScene scene;
   DistanceGrid coarse{32}, fine{128};
+  bool convex = false;
 };
 
 namespace {
@@ -173,6 +174,8 @@ bool Mesh::exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
   return first_hit(*geometry_, p, d, t_max, Side::back, hit);
 }
 
+bool Mesh::convex() const { return geometry_->convex; }
+
 bool Mesh::inside(Vec3 p) const {
   // The nearest face on any ray tells: seen from behind, the point is inside.
   Hit hit;
@@ -211,6 +214,7 @@ BuiltMesh build_mesh(const TriangleMesh& mesh) {
   const double radius = std::sqrt(radius2);
 
   auto geometry = std::make_shared<MeshGeometry>();
+  geometry->convex = is_convex(mesh);
   geometry->device.reset(rtcNewDevice("threads=1,set_affinity=0"));
   if (!geometry->device) throw MeshError("Embree has no device");
   geometry->scene.reset(rtcNewScene(geometry->device.get()));

@@ -7,6 +7,7 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 #include <tuple>
 
@@ -116,6 +117,45 @@ double surface_area(const TriangleMesh& mesh) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) sum += length(area_vector(mesh, t));
   return sum;
+}
+
+bool is_convex(const TriangleMesh& mesh) {
+  Vec3 middle;
+  for (const Vec3& v : mesh.vertices)
+    middle = middle + v * (1 / static_cast<double>(mesh.vertices.size()));
+  // Once around the middle: the surface covers every direction from there a single time, so it is
+  // one body and meets itself nowhere.
+  double solid_angle = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 a = mesh.vertices[t[0]] - middle, b = mesh.vertices[t[1]] - middle,
+               c = mesh.vertices[t[2]] - middle;
+    const double six_volumes = dot(a, cross(b, c)), p = length(a), q = length(b), r = length(c);
+    if (six_volumes <= 0) return false;
+    // Van Oosterom and Strackee (1983).
+    solid_angle +=
+        2 * std::atan2(six_volumes, p * q * r + dot(a, b) * r + dot(b, c) * p + dot(c, a) * q);
+  }
+  if (solid_angle > 5 * std::numbers::pi) return false;
+  // And nowhere bent inwards: no vertex stands above the plane of a neighbouring face.
+  struct Edge {
+    std::uint32_t low, high, face, opposite;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
+    for (int i = 0; i < 3; ++i) {
+      const Triangle& t = mesh.triangles[f];
+      const auto [low, high] = std::minmax(t[i], t[(i + 1) % 3]);
+      edges.push_back({low, high, f, t[(i + 2) % 3]});
+    }
+  std::ranges::sort(edges, {}, [](const Edge& e) { return std::pair(e.low, e.high); });
+  for (std::size_t i = 0; i < edges.size(); i += 2) {
+    const Vec3 normal = area_vector(mesh, mesh.triangles[edges[i].face]);
+    const Vec3 beyond = mesh.vertices[edges[i + 1].opposite] - mesh.vertices[edges[i].low];
+    constexpr double rounding = 1e-9;
+    if (dot(beyond, normal) > rounding * length(beyond) * length(normal)) return false;
+  }
+  return true;
 }
 
 }  // namespace translucube

@@ -34,6 +34,8 @@ void close_mesh(TriangleMesh& mesh);
 /// Signed volume (divergence theorem); > 0 if the normals point outward.
 double volume(const TriangleMesh& mesh);
 double surface_area(const TriangleMesh& mesh);
+/// Whether a closed mesh bounds one convex body; false in doubt.
+bool is_convex(const TriangleMesh& mesh);
 
 /// A mesh in its own unit, ready to intersect, and where it was.
 struct BuiltMesh {

@@ -24,14 +24,14 @@ struct Hit {
 ///   inside(p)                 whether a point lies in the body
 ///   clearance(p)              a lower bound of the distance of a point inside to the surface;
 ///                             for a mesh, the walk's clearing.h keeps it
-/// and `convex`: whether a ray that leaves can never come back.
+///   convex()                  whether a ray that leaves can never come back
 
 ///
 /// A sphere also rolls: every chord of a ray that is totally reflected inside is the same, so the
 /// light that is trapped in a thin medium needs no loop over its reflections.
 
 struct Sphere {
-  static constexpr bool convex = true;
+  static constexpr bool convex() { return true; }
 
   /// Moves a ray that starts at the surface (p unit) inward along d by a distance, reflected
   /// wherever it meets the surface.
@@ -77,7 +77,7 @@ struct Sphere {
 
 /// The infinite plate |z| < 1/2: the truths of slab optics are known for it.
 struct Slab {
-  static constexpr bool convex = true;
+  static constexpr bool convex() { return true; }
 
   bool inside(Vec3 p) const { return std::fabs(p.z) < 0.5; }
   double clearance(Vec3 p) const { return 0.5 - std::fabs(p.z); }
@@ -124,10 +124,9 @@ struct MeshGeometry;
 /// A closed triangle mesh, intersected by Embree (intersect.cpp).
 class Mesh {
  public:
-  static constexpr bool convex = false;
-
   explicit Mesh(std::shared_ptr<const MeshGeometry> geometry) : geometry_(std::move(geometry)) {}
 
+  bool convex() const;
   bool inside(Vec3 p) const;
   double clearance(Vec3 p) const { return distance_bounds(p).least; }
   /// Bounds of the distance to the surface, at the cost of a look at a table; a finer one takes its

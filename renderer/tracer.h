@@ -276,10 +276,8 @@ class Tracer {
     ++tile_.counters.connections;
     const LobeValue value = evaluate(frame.to_local(light.direction));
     if (value.f_cos <= 0) return;
-    if constexpr (!Shape::convex) {
-      Hit hit;
-      if (shape_.enter(path.p, light.direction, hit)) return;
-    }
+    Hit hit;
+    if (!shape_.convex() && shape_.enter(path.p, light.direction, hit)) return;
     collector_.note("connect", path);
     collector_.collect(path, light.value.radiance,
                        path.weight * value.f_cos / (light.value.pdf + value.pdf));
@@ -303,17 +301,14 @@ class Tracer {
     path.d = direction;
     path.weight = weight;
     path.pdf = pdf;
-    if constexpr (Shape::convex) {
-      escape(path);
-    } else {
-      path.sampler = from.sampler.split();
-      // A model that gains energy has no answer in deep cavities: the branches must not multiply.
-      if constexpr (dipole) {
-        if (++path.arrivals > 2) path.roulette = 1;
-        if (path.arrivals > dipole_arrival_cap) return collector_.give_up(path);
-      }
-      if (path.survives()) arriving_.push_back(path);
+    if (shape_.convex()) return escape(path);
+    path.sampler = from.sampler.split();
+    // A model that gains energy has no answer in deep cavities: the branches must not multiply.
+    if constexpr (dipole) {
+      if (++path.arrivals > 2) path.roulette = 1;
+      if (path.arrivals > dipole_arrival_cap) return collector_.give_up(path);
     }
+    if (path.survives()) arriving_.push_back(path);
   }
 
   /// To the environment, where many look together.

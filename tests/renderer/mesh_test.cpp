@@ -47,6 +47,27 @@ TEST(Mesh, EmptyOrFlatIsRefused) {
   EXPECT_THROW(close_mesh(flat), MeshError);
 }
 
+TEST(Mesh, IsKnownToBeConvex) {
+  EXPECT_TRUE(is_convex(box({1, 2, 3})));
+  EXPECT_TRUE(is_convex(icosphere(5)));
+  EXPECT_FALSE(is_convex(knot(60, 12)));
+}
+
+TEST(Mesh, WithADentOrOfTwoPartsIsNotConvex) {
+  TriangleMesh dented = icosphere(4);
+  dented.vertices[100] = 0.99 * dented.vertices[100];
+  EXPECT_FALSE(is_convex(dented));
+  for (const double apart : {0.0, 3.0}) {
+    TriangleMesh two = box({1, 1, 1});
+    for (Triangle t : box({1, 1, 1}).triangles) {
+      for (std::uint32_t& v : t) v += 8;
+      two.triangles.push_back(t);
+    }
+    for (const Vec3& v : box({2, 2, 2}).vertices) two.vertices.push_back(v + Vec3{apart, 0, 0});
+    EXPECT_FALSE(is_convex(two)) << apart;
+  }
+}
+
 TEST(Mesh, FromObjAndPlyFilesIsTheSameBody) {
   const auto folder = std::filesystem::temp_directory_path() / "translucube_mesh_test";
   std::filesystem::create_directories(folder);
