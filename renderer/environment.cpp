@@ -29,12 +29,23 @@ ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, doub
 
 void ImageEnvironment::build_sampling() {
   // The integral of the bilinear interpolant over a cell is its tent filter (1, 6, 1) / 8.
-  const auto at = [&](int x, int y) {
-    const Texel& t =
-        texels_[std::size_t(std::clamp(y, 0, height_ - 1)) * width_ + (x + width_) % width_];
-    return static_cast<double>(luminance({t.r, t.g, t.b}));
+  std::vector<double> across;  // the filter along the rows
+  across.reserve(texels_.size());
+  for (int y = 0; y < height_; ++y) {
+    std::vector<double> row;
+    row.reserve(width_ + 2);
+    const auto add = [&](int x) {
+      const Texel& t = texels_[std::size_t(y) * width_ + x];
+      row.push_back(static_cast<double>(luminance({t.r, t.g, t.b})));
+    };
+    add(width_ - 1);
+    for (int x = 0; x < width_; ++x) add(x);
+    add(0);
+    for (int x = 0; x < width_; ++x) across.push_back(row[x] + 6 * row[x + 1] + row[x + 2]);
+  }
+  const auto row = [&](int x, int y) {
+    return across[std::size_t(std::clamp(y, 0, height_ - 1)) * width_ + x];
   };
-  const auto row = [&](int x, int y) { return at(x - 1, y) + 6 * at(x, y) + at(x + 1, y); };
   const std::size_t n = texels_.size();
   std::vector<double> weight(n);
   double total = 0;
@@ -89,14 +100,19 @@ void ImageEnvironment::build_irradiance() {
   constexpr std::array<double, 9> norm{1, 3, 3, 3, 15, 15, 15, 5. / 4, 15. / 4};
   constexpr std::array<double, 9> lobe{1, 2. / 3, 2. / 3, 2. / 3, .25, .25, .25, .25, .25};
   std::array<std::array<double, 3>, 9> moments{};
+  std::vector<double> sines, cosines;
+  for (int x = 0; x < width_; ++x) {
+    const double azimuth = 2 * pi * (0.5 - (x + 0.5) / width_) + rotation_rad_;
+    sines.push_back(std::sin(azimuth));
+    cosines.push_back(std::cos(azimuth));
+  }
   for (int y = 0; y < height_; ++y) {
     const double theta = pi * (y + 0.5) / height_, sin_theta = std::sin(theta);
     const double solid_angle =
         2 * pi / width_ * (std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_));
     for (int x = 0; x < width_; ++x) {
-      const double azimuth = 2 * pi * (0.5 - (x + 0.5) / width_) + rotation_rad_;
-      const std::array<double, 9> basis = quadratic_basis(
-          {sin_theta * std::sin(azimuth), std::cos(theta), sin_theta * std::cos(azimuth)});
+      const std::array<double, 9> basis =
+          quadratic_basis({sin_theta * sines[x], std::cos(theta), sin_theta * cosines[x]});
       const Texel& t = texels_[std::size_t(y) * width_ + x];
       for (std::size_t i = 0; i < 9; ++i) {
         moments[i][0] += solid_angle * basis[i] * t.r;

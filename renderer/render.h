@@ -39,8 +39,10 @@ std::optional<Pass> plan_pass(std::uint32_t index, std::uint64_t pixels,
 
 /// A scene ready to trace: immutable, shared by threads.
 struct Scene;
-/// Reads the resources. Throws SceneError.
-std::shared_ptr<const Scene> build_scene(const SceneSpec& spec);
+class EnvironmentCache;
+/// Reads the resources, the environment by way of the cache if there is one. Throws SceneError.
+std::shared_ptr<const Scene> build_scene(const SceneSpec& spec,
+                                         EnvironmentCache* environments = nullptr);
 
 /// The transport that the material needs: "interface", "clear", "walk" or "interfaced-lambertian".
 std::string transport_name(const Scene& scene);

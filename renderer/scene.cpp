@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "renderer/environment_cache.h"
 #include "renderer/image_io.h"
 #include "renderer/mesh.h"
 #include "renderer/render.h"
@@ -29,12 +30,12 @@ PlacedShape make_shape(const MeshObject& object) {
   }
 }
 
-Environment make_environment(const EnvironmentSpec& spec) {
+Environment make_environment(const EnvironmentSpec& spec, EnvironmentCache& cache) {
   if (const auto* constant = std::get_if<ConstantEnvironmentSpec>(&spec.source))
     return UniformEnvironment{constant->radiance * static_cast<float>(spec.scale)};
   try {
-    const Image image = read_image(std::get<ImageEnvironmentSpec>(spec.source).file);
-    return ImageEnvironment(image, spec.rotation_deg * std::numbers::pi / 180, spec.scale);
+    return *cache.get(std::get<ImageEnvironmentSpec>(spec.source).file,
+                      spec.rotation_deg * std::numbers::pi / 180, spec.scale);
   } catch (const ImageError& error) {
     throw SceneError(SceneError::Part::environment, error.what());
   }
@@ -113,7 +114,8 @@ void check_mesh(const std::filesystem::path& file) {
   }
 }
 
-std::shared_ptr<const Scene> build_scene(const SceneSpec& spec) {
+std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache* environments) {
+  EnvironmentCache own;
   const PlacedShape placed = std::visit([](const auto& o) { return make_shape(o); }, spec.object);
   const double unit = placed.unit_mm;
   const auto to_body = [&](Vec3 p) { return (p - placed.center_mm) * (1 / unit); };
@@ -127,7 +129,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec) {
   Material traced = spec.material;
   traced.coefficients.sigma_a_peak = least_absorption(spec);
   scene->interior = make_interior(traced, unit);
-  scene->environment = make_environment(spec.environment);
+  scene->environment = make_environment(spec.environment, environments ? *environments : own);
   scene->camera = Camera(to_body(spec.camera.position_mm), to_body(spec.camera.target_mm),
                          spec.camera.up, spec.camera.vfov_deg, spec.width, spec.height);
   scene->camera_inside =

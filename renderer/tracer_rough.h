@@ -44,10 +44,8 @@ void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
     for (std::size_t i = 0; i < lit.size; ++i) {
       const Vec3 direction{lights_.x[lit.light[i]], lights_.y[lit.light[i]],
                            lights_.z[lit.light[i]]};
-      if constexpr (!Shape::convex) {
-        Hit hit;
-        if (shape_.enter(crossing_[lit.slot[i]].p, direction, hit)) continue;
-      }
+      Hit hit;
+      if (!shape_.convex() && shape_.enter(crossing_[lit.slot[i]].p, direction, hit)) continue;
       found[lit.slot[i]] += lights_.radiance[lit.light[i]] * lit.share[i];
     }
     send_out(lights_each);
