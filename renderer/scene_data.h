@@ -53,6 +53,9 @@ struct Scene {
   bool camera_inside = false;
   std::vector<Lane> lanes;          ///< of the film, unless it is explorable; [0] is the material's
   std::optional<BinSpread> spread;  ///< explorable: the film's lanes are bins of length
+  /// Whether light is looked for at rough exits and through smooth boundaries; without, the same
+  /// mean comes of the paths alone, with more noise.
+  bool next_event_estimation = true;
 
   int film_lanes() const {
     return spread ? spread->bins().count() : static_cast<int>(lanes.size());

@@ -4,7 +4,8 @@ namespace translucube {
 
 SphereConnector::SphereConnector(const Scene& scene, Collector& collector, std::uint64_t key)
     : collector_(collector),
-      environment_(std::get_if<ImageEnvironment>(&scene.environment)),
+      environment_(scene.next_event_estimation ? std::get_if<ImageEnvironment>(&scene.environment)
+                                               : nullptr),
       medium_(std::get<ScatteringInterior>(scene.interior).medium),
       ior_(std::get<SmoothInterface>(scene.interface).ior) {
   if (!active()) return;

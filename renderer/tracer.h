@@ -243,7 +243,8 @@ class Tracer {
   template <class Evaluate>
   void connect(Path& path, const Frame& frame, Evaluate&& evaluate) {
     const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
-    if (environment == nullptr) return;  // the same from everywhere: nothing to look for
+    // The same from everywhere: nothing to look for.
+    if (environment == nullptr || !scene_.next_event_estimation) return;
     const EnvironmentSample light = environment->sample(path.sampler.next2());
     ++tile_.counters.connections;
     const LobeValue value = evaluate(frame.to_local(light.direction));
@@ -293,7 +294,7 @@ class Tracer {
     if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
       return collector_.collect(path, uniform->radiance, path.weight);
     const auto& environment = std::get<ImageEnvironment>(scene_.environment);
-    if (path.pdf == 0)
+    if (path.pdf == 0 || !scene_.next_event_estimation)
       return collector_.collect(path, environment.radiance_from(path.d), path.weight);
     const EnvironmentValue light = environment.value_from(path.d);
     const double share = path.pdf / (path.pdf + light.pdf);

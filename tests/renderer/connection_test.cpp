@@ -219,5 +219,20 @@ TEST(Connections, FindWhatTheWalkAloneFinds) {
   }
 }
 
+TEST(Connections, SwitchedOffTheMeanIsTheSame) {
+  for (const double alpha : {0.0, 0.2}) {
+    Scene scene = half_lit(3, 1.5, 0.3f);
+    if (alpha > 0) scene.interface = RoughInterface{1.5, Ggx{alpha}};
+    const Film connected = trace(scene, 256);
+    scene.next_event_estimation = false;
+    const Film walked = trace(scene, 512);
+    EXPECT_GT(connected.counters.connections, 0u);
+    EXPECT_EQ(walked.counters.connections, 0u);
+    const Estimate a = image_mean(connected), b = image_mean(walked);
+    EXPECT_NEAR(a.mean, b.mean, 4 * std::hypot(a.standard_error, b.standard_error)) << alpha;
+    EXPECT_LT(std::hypot(a.standard_error, b.standard_error), 0.02 * b.mean) << alpha;
+  }
+}
+
 }  // namespace
 }  // namespace translucube::test
