@@ -26,7 +26,8 @@ void ImageEnvironment::build_sampling() {
   const auto at = [&](int x, int y) {
     const Texel& t =
         texels_[std::size_t(std::clamp(y, 0, height_ - 1)) * width_ + (x + width_) % width_];
-    return static_cast<double>(luminance({t.r, t.g, t.b}));
+    // Photographs hold slightly negative pixels: they are light that must be found like any other.
+    return static_cast<double>(std::fabs(luminance({t.r, t.g, t.b})));
   };
   const auto row = [&](int x, int y) { return at(x - 1, y) + 6 * at(x, y) + at(x + 1, y); };
   const std::size_t n = texels_.size();
@@ -35,8 +36,7 @@ void ImageEnvironment::build_sampling() {
   for (int y = 0; y < height_; ++y) {
     const double solid_angle = std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_);
     for (int x = 0; x < width_; ++x) {
-      // Photographs hold slightly negative pixels; they are left to the other sampling techniques.
-      const double mean = std::fmax(0.0, (row(x, y - 1) + 6 * row(x, y) + row(x, y + 1)) / 64);
+      const double mean = (row(x, y - 1) + 6 * row(x, y) + row(x, y + 1)) / 64;
       total += weight[std::size_t(y) * width_ + x] = mean * solid_angle;
     }
   }
@@ -105,10 +105,16 @@ void ImageEnvironment::build_irradiance() {
 }
 
 Rgb ImageEnvironment::irradiance(Vec3 n) const {
+  const std::array<Rgb, 3> orders = irradiance_by_order(n);
+  return orders[0] + orders[1] + orders[2];
+}
+
+std::array<Rgb, 3> ImageEnvironment::irradiance_by_order(Vec3 n) const {
   const std::array<double, 9> basis = quadratic_basis(n);
-  Rgb sum;
-  for (std::size_t i = 0; i < 9; ++i) sum += irradiance_[i] * static_cast<float>(basis[i]);
-  return sum;
+  std::array<Rgb, 3> orders;
+  for (std::size_t i = 0; i < 9; ++i)
+    orders[i == 0 ? 0 : i < 4 ? 1 : 2] += irradiance_[i] * static_cast<float>(basis[i]);
+  return orders;
 }
 
 ImageEnvironment::Coordinates ImageEnvironment::coordinates(Vec3 d) const {

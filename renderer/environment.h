@@ -40,6 +40,9 @@ class ImageEnvironment {
   /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order
   /// (Ramamoorthi and Hanrahan 2001): within a few percent, and possibly negative under a hard sun.
   Rgb irradiance(Vec3 n) const;
+  /// The same by order, 0 to 2: of a normal at an angle from n, averaged about n, it is their sum
+  /// with the Legendre polynomials of the angle's cosine as weights.
+  std::array<Rgb, 3> irradiance_by_order(Vec3 n) const;
 
  private:
   struct Texel {

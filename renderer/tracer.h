@@ -26,7 +26,7 @@ namespace translucube {
 /// cheap, high where each turn is a long walk (chosen by relMSE x CPU on the peers' materials).
 inline constexpr double roulette_of_clear = 1.0 / 64;
 /// The same for a scattered path, relative to its weight at the first scattering.
-inline constexpr double roulette_of_scattered = 1.0 / 2;
+inline constexpr double roulette_of_scattered = 1.0 / 4;
 /// The same inside a clear body under a rough interface.
 inline constexpr double roulette_of_rough = 1.0 / 8;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
@@ -296,10 +296,14 @@ class Tracer {
     const auto& environment = std::get<ImageEnvironment>(scene_.environment);
     if (path.pdf == 0 || !scene_.next_event_estimation)
       return collector_.collect(path, environment.radiance_from(path.d), path.weight);
+    if constexpr (connecting) {
+      if (path.pdf == Path::found_by_connecting)
+        return collector_.collect(path, connector_.expected(path), path.weight);
+    }
     const EnvironmentValue light = environment.value_from(path.d);
     const double share = path.pdf / (path.pdf + light.pdf);
     if constexpr (connecting) {
-      const Rgb expected = connector_.expected(path.n);
+      const Rgb expected = connector_.expected(path);
       collector_.collect(path, expected + (light.radiance - expected) * static_cast<float>(share),
                          path.weight);
     } else {

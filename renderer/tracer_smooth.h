@@ -73,6 +73,7 @@ void Tracer<Shape, Interface, Interior>::follow_unscattered(Path path) {
     if (!scattered.survives()) return;
     scattered.roulette = roulette_of_scattered * scattered.weight;
     collector_.note("scatter", scattered);
+    connector_.start(scattered);
     scatter_at(shape_, scattered);
     walking_.push_back(scattered);
   }

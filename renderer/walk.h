@@ -9,6 +9,7 @@
 
 namespace translucube {
 
+
 /// What moves inside a body, in the body's unit of length.
 struct Particle {
   Vec3 p, d;          ///< position, direction of travel
