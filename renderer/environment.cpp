@@ -166,7 +166,7 @@ EnvironmentValue ImageEnvironment::value_from(Vec3 direction) const {
   return {bilinear(c.x, c.y), cell_pdf(x, y, c.sin_theta)};
 }
 
-EnvironmentSample ImageEnvironment::sample(Sample2 u) const {
+ImageEnvironment::Drawn ImageEnvironment::draw(Sample2 u) const {
   const double position = u.u * static_cast<double>(alias_.size());
   auto cell = std::min(static_cast<std::size_t>(position), alias_.size() - 1);
   double fraction = position - static_cast<double>(cell);
@@ -178,11 +178,37 @@ EnvironmentSample ImageEnvironment::sample(Sample2 u) const {
     cell = alias.other;
   }
   const int x = static_cast<int>(cell % width_), y = static_cast<int>(cell / width_);
-  const double px = x + std::fmin(fraction, 1.0), py = y + u.v;
-  const double theta = pi * py / height_, azimuth = 2 * pi * (0.5 - px / width_) + rotation_rad_;
+  return {x, y, x + std::fmin(fraction, 1.0), y + u.v};
+}
+
+EnvironmentSample ImageEnvironment::at(const Drawn& drawn) const {
+  const double theta = pi * drawn.py / height_;
+  const double azimuth = 2 * pi * (0.5 - drawn.px / width_) + rotation_rad_;
   const double sin_theta = std::sin(theta);
   return {{sin_theta * std::sin(azimuth), std::cos(theta), sin_theta * std::cos(azimuth)},
-          {bilinear(static_cast<float>(px), static_cast<float>(py)), cell_pdf(x, y, sin_theta)}};
+          {bilinear(static_cast<float>(drawn.px), static_cast<float>(drawn.py)),
+           cell_pdf(drawn.x, drawn.y, sin_theta)}};
+}
+
+EnvironmentSample ImageEnvironment::sample(Sample2 u) const { return at(draw(u)); }
+
+std::vector<EnvironmentSample> ImageEnvironment::sample(std::span<const Sample2> u) const {
+  const auto texel = [&](int x, int y) {
+    return &texels_[std::size_t(std::clamp(y, 0, height_ - 1)) * width_ + x];
+  };
+  for (const Sample2& sample : u)
+    __builtin_prefetch(&alias_[static_cast<std::size_t>(sample.u * double(alias_.size()))]);
+  std::vector<Drawn> drawn;
+  drawn.reserve(u.size());
+  for (const Sample2& sample : u) {
+    drawn.push_back(draw(sample));
+    for (int row = -1; row <= 1; ++row)
+      __builtin_prefetch(texel(drawn.back().x, drawn.back().y + row));
+  }
+  std::vector<EnvironmentSample> samples;
+  samples.reserve(u.size());
+  for (const Drawn& place : drawn) samples.push_back(at(place));
+  return samples;
 }
 
 }  // namespace translucube

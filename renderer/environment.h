@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -37,6 +38,8 @@ class ImageEnvironment {
   EnvironmentValue value_from(Vec3 direction) const;
   /// Draws a direction in proportion to luminance times solid angle, a pixel cell at a time.
   EnvironmentSample sample(Sample2 u) const;
+  /// Many of them; what they read of a map larger than the caches is on its way meanwhile.
+  std::vector<EnvironmentSample> sample(std::span<const Sample2> u) const;
   /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order
   /// (Ramamoorthi and Hanrahan 2001): within a few percent, and possibly negative under a hard sun.
   Rgb irradiance(Vec3 n) const;
@@ -59,6 +62,13 @@ class ImageEnvironment {
   };
   Coordinates coordinates(Vec3 direction) const;
   Rgb bilinear(float x, float y) const;
+  /// A place on the map, in pixels, and the cell that it was drawn from.
+  struct Drawn {
+    int x, y;
+    double px, py;
+  };
+  Drawn draw(Sample2 u) const;
+  EnvironmentSample at(const Drawn& drawn) const;
   double cell_pdf(int x, int y, double sin_theta) const;
   void build_sampling();
   void build_irradiance();

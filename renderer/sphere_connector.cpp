@@ -14,12 +14,13 @@ SphereConnector::SphereConnector(const Scene& scene, Collector& collector, std::
       carried_(carried_share(scene, medium_) * std::numbers::inv_pi_v<float>),
       rng_(key) {
   if (!active()) return;
-  lights_.reserve(LightList::size);
-  for (std::size_t i = 0; i < LightList::size; ++i) {
-    lights_.push_back(environment_->sample(
-        {(static_cast<double>(i) + rng_.uniform()) / LightList::size, rng_.uniform()}));
-    list_.set(i, lights_[i].direction);
-  }
+  std::vector<Sample2> numbers;
+  numbers.reserve(LightList::size);
+  for (std::size_t i = 0; i < LightList::size; ++i)
+    numbers.push_back(
+        {(static_cast<double>(i) + rng_.uniform()) / LightList::size, rng_.uniform()});
+  lights_ = environment_->sample(numbers);
+  for (std::size_t i = 0; i < LightList::size; ++i) list_.set(i, lights_[i].direction);
 }
 
 float SphereConnector::carried_share(const Scene& scene, const Medium& medium) {
