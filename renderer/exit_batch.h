@@ -21,7 +21,7 @@ struct ExitMedium {
 
 /// Lights as the vertices choose among them: `candidates` strata of `positions` lights each.
 struct LightList {
-  static constexpr std::size_t candidates = 16, positions = 64, padding = 16;
+  static constexpr std::size_t candidates = 16, positions = 128, padding = 16;
   static constexpr std::size_t size = candidates * positions;
   using Floats = std::array<float, candidates*(positions + padding)>;
 

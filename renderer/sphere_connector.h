@@ -41,9 +41,10 @@ class SphereConnector {
 
   /// Whether there is anything to look for: light that differs between directions.
   bool active() const { return environment_ != nullptr; }
-  /// Mean free paths below the surface where vertices are visited one by one: little light goes
-  /// straight out from deeper ones.
-  double margin() const { return active() ? 3 : 0; }
+  /// Mean free paths below the surface where vertices are visited one by one: light that goes
+  /// straight out from deeper ones is left to the walk, which meets the sun at random (at 3 the
+  /// untrimmed relMSE of S100 is five times as large).
+  double margin() const { return active() ? 4 : 0; }
 
   /// Before the first connection of a path: its walk starts at path.p.
   void start(Path& path);

@@ -29,6 +29,8 @@ inline constexpr double roulette_of_clear = 1.0 / 64;
 inline constexpr double roulette_of_scattered = 1.0 / 4;
 /// The same inside a clear body under a rough interface.
 inline constexpr double roulette_of_rough = 1.0 / 8;
+/// Below this scattering coefficient [1 / unit] a walk is so short that a camera sample starts two.
+inline constexpr double short_walk_sigma_s = 2;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
 /// light that is trapped gets there, for good (a camera inside a clear body) or, in a mesh, for
 /// nearly as long (a medium of millions of bounding radii to the mean free path).
