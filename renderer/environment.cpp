@@ -36,7 +36,9 @@ void ImageEnvironment::build_sampling() {
     row.reserve(width_ + 2);
     const auto add = [&](int x) {
       const Texel& t = texels_[std::size_t(y) * width_ + x];
-      row.push_back(static_cast<double>(luminance({t.r, t.g, t.b})));
+      // Photographs hold slightly negative pixels: they are light that must be found like any
+      // other.
+      row.push_back(static_cast<double>(std::fabs(luminance({t.r, t.g, t.b}))));
     };
     add(width_ - 1);
     for (int x = 0; x < width_; ++x) add(x);
@@ -52,8 +54,7 @@ void ImageEnvironment::build_sampling() {
   for (int y = 0; y < height_; ++y) {
     const double solid_angle = std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_);
     for (int x = 0; x < width_; ++x) {
-      // Photographs hold slightly negative pixels; they are left to the other sampling techniques.
-      const double mean = std::fmax(0.0, (row(x, y - 1) + 6 * row(x, y) + row(x, y + 1)) / 64);
+      const double mean = (row(x, y - 1) + 6 * row(x, y) + row(x, y + 1)) / 64;
       total += weight[std::size_t(y) * width_ + x] = mean * solid_angle;
     }
   }
@@ -130,10 +131,16 @@ void ImageEnvironment::build_irradiance() {
 }
 
 Rgb ImageEnvironment::irradiance(Vec3 n) const {
+  const std::array<Rgb, 3> orders = irradiance_by_order(n);
+  return orders[0] + orders[1] + orders[2];
+}
+
+std::array<Rgb, 3> ImageEnvironment::irradiance_by_order(Vec3 n) const {
   const std::array<double, 9> basis = quadratic_basis(n);
-  Rgb sum;
-  for (std::size_t i = 0; i < 9; ++i) sum += irradiance_[i] * static_cast<float>(basis[i]);
-  return sum;
+  std::array<Rgb, 3> orders;
+  for (std::size_t i = 0; i < 9; ++i)
+    orders[i == 0 ? 0 : i < 4 ? 1 : 2] += irradiance_[i] * static_cast<float>(basis[i]);
+  return orders;
 }
 
 MapCoordinates ImageEnvironment::coordinates(Vec3 d) const {
@@ -196,8 +203,8 @@ MapCoordinates ImageEnvironment::draw(Sample2 u) const {
   const auto block = static_cast<std::size_t>(
       std::upper_bound(blocks_.begin(), blocks_.end() - 1, u.u) - blocks_.begin());
   const double before = block > 0 ? blocks_[block - 1] : 0;
-  const float rest = std::fmin(static_cast<float>((u.u - before) / (blocks_[block] - before)),
-                               0x1.fffffep-1f);
+  const float rest =
+      std::fmin(static_cast<float>((u.u - before) / (blocks_[block] - before)), 0x1.fffffep-1f);
   const float* cells = &cells_[block * cells_of_a_block];
   const auto cell =
       static_cast<int>(std::upper_bound(cells, cells + cells_of_a_block - 1, rest) - cells);
@@ -206,8 +213,7 @@ MapCoordinates ImageEnvironment::draw(Sample2 u) const {
              by = static_cast<int>(block) / blocks_across_;
   const float x = static_cast<float>(bx * block_size + cell % block_size) +
                   std::clamp((rest - below) / (cells[cell] - below), 0.0f, 1.0f);
-  const float y =
-      static_cast<float>(by * block_size + cell / block_size) + static_cast<float>(u.v);
+  const float y = static_cast<float>(by * block_size + cell / block_size) + static_cast<float>(u.v);
   return {x, y, std::sin(static_cast<float>(pi) / static_cast<float>(height_) * y)};
 }
 
@@ -220,6 +226,19 @@ Vec3 ImageEnvironment::direction(MapCoordinates at) const {
 EnvironmentSample ImageEnvironment::sample(Sample2 u) const {
   const MapCoordinates at = draw(u);
   return {direction(at), value_at(at)};
+}
+
+std::vector<EnvironmentSample> ImageEnvironment::sample(std::span<const Sample2> u) const {
+  std::vector<MapCoordinates> places;
+  places.reserve(u.size());
+  for (const Sample2& sample : u) {
+    places.push_back(draw(sample));
+    prefetch(places.back().x, places.back().y);
+  }
+  std::vector<EnvironmentSample> samples;
+  samples.reserve(u.size());
+  for (const MapCoordinates& at : places) samples.push_back({direction(at), value_at(at)});
+  return samples;
 }
 
 }  // namespace translucube

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -51,12 +52,17 @@ class ImageEnvironment {
   /// Draws a direction in proportion to luminance times solid angle, a pixel cell at a time; nearby
   /// u.u give nearby directions, so that stratified numbers give stratified light.
   EnvironmentSample sample(Sample2 u) const;
-  /// The same, in the map.
+  /// Many of them; what they read of a map larger than the caches is on its way meanwhile.
+  std::vector<EnvironmentSample> sample(std::span<const Sample2> u) const;
+  /// One, in the map.
   MapCoordinates draw(Sample2 u) const;
   Vec3 direction(MapCoordinates at) const;
   /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order
   /// (Ramamoorthi and Hanrahan 2001): within a few percent, and possibly negative under a hard sun.
   Rgb irradiance(Vec3 n) const;
+  /// The same by order, 0 to 2: of a normal at an angle from n, averaged about n, it is their sum
+  /// with the Legendre polynomials of the angle's cosine as weights.
+  std::array<Rgb, 3> irradiance_by_order(Vec3 n) const;
 
  private:
   struct Texel {

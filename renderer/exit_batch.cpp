@@ -124,7 +124,122 @@ HWY_INLINE V far_minimum(const Plane& plane) {
 /// Whether the angle a, in (0, 3 pi / 2), is less than b, which is within pi of it.
 HWY_INLINE M less(Turn a, Turn b) { return hn::Gt((b - a).s, set(0)); }
 
-void FindExits(const ExitMedium& medium, ExitBranch branch, ExitBatch& batch) {
+HWY_INLINE V dot(V ax, V ay, V az, V bx, V by, V bz) {
+  return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, hn::Mul(az, bz)));
+}
+
+HWY_INLINE Plane plane_of(V n, V rho, bool far) {
+  const V one = set(1), n_rho = hn::Mul(n, rho), k_t = hn::Min(one, n_rho);
+  return {Ratio(hn::Min(one, hn::Div(one, n_rho))), Ratio(k_t), Ratio(hn::Div(k_t, n)), far};
+}
+
+/// Share that a smooth boundary lets out, by the cosines inside and outside.
+HWY_INLINE V transmittance(V n, V cos_i, V cos_t) {
+  const V rs = hn::Div(hn::MulSub(n, cos_i, cos_t), hn::MulAdd(n, cos_i, cos_t));
+  const V rp = hn::Div(hn::NegMulAdd(n, cos_t, cos_i), hn::MulAdd(n, cos_t, cos_i));
+  return hn::NegMulAdd(set(0.5f), hn::MulAdd(rs, rs, hn::Mul(rp, rp)), set(1));
+}
+
+void ChooseLights(const ExitMedium& medium, const LightStrata& lights, std::size_t position,
+                  ExitBatch& batch) {
+  constexpr std::size_t candidates = LightStrata::candidates, positions = LightStrata::positions,
+                        stride = positions + LightStrata::padding;
+  const V one = set(1), n = set(medium.ior);
+  const hn::Rebind<std::int32_t, D> di;
+  HWY_ALIGN std::array<float, candidates * hn::MaxLanes(D())> values;
+  for (std::size_t lane = 0; lane < batch.size; lane += hn::Lanes(D())) {
+    const V ux = load(batch.up_x, lane), uy = load(batch.up_y, lane), uz = load(batch.up_z, lane);
+    const V ax = load(batch.axis_x, lane), ay = load(batch.axis_y, lane),
+            az = load(batch.axis_z, lane);
+    // up, turned: along + cos x + sin y
+    const V cosine = dot(ax, ay, az, ux, uy, uz);
+    const V lx = hn::Mul(cosine, ax), ly = hn::Mul(cosine, ay), lz = hn::Mul(cosine, az);
+    const V xx = hn::Sub(ux, lx), xy = hn::Sub(uy, ly), xz = hn::Sub(uz, lz);
+    const V yx = hn::MulSub(ay, uz, hn::Mul(az, uy)), yy = hn::MulSub(az, ux, hn::Mul(ax, uz)),
+            yz = hn::MulSub(ax, uy, hn::Mul(ay, ux));
+    // What leaves goes about as the cosine next to the surface and is the same in all directions
+    // from the centre; none beyond the end of the branch.
+    const V rho = hn::Sqrt(hn::Sub(one, load(batch.depth2, lane)));
+    const Plane plane = plane_of(n, rho, false);
+    const V end = plane.psi(plane.at({set(0), one})).c;
+    const V rho2 = hn::Mul(rho, rho), cosine_part = hn::Mul(rho2, rho2);
+    const V scale = hn::Div(cosine_part, hn::Sub(one, end));
+    const V offset = hn::NegMulAdd(scale, end, hn::Sub(one, cosine_part));
+    const V least = set(0.01f);
+    const std::size_t first = (position + lane) % positions;
+    V sum = set(0);
+    for (std::size_t j = 0; j < candidates; ++j) {
+      const std::size_t at = j * stride + first;
+      const V wx = hn::LoadU(D(), &lights.x[at]), wy = hn::LoadU(D(), &lights.y[at]),
+              wz = hn::LoadU(D(), &lights.z[at]);
+      const V c = hn::MulAdd(set(lights.cos_turn[j]), dot(xx, xy, xz, wx, wy, wz),
+                             hn::MulAdd(set(lights.sin_turn[j]), dot(yx, yy, yz, wx, wy, wz),
+                                        dot(lx, ly, lz, wx, wy, wz)));
+      const V value =
+          hn::Max(least, hn::IfThenElse(hn::Gt(c, end), hn::MulAdd(scale, c, offset), least));
+      hn::Store(value, D(), &values[j * hn::Lanes(D())]);
+      sum = hn::Add(sum, value);
+    }
+    const V wanted = hn::Mul(sum, load(batch.choice, lane));
+    V below = set(0), chosen = set(0), value = hn::Load(D(), values.data());
+    for (std::size_t j = 1; j < candidates; ++j) {
+      below = hn::Add(below, hn::Load(D(), &values[(j - 1) * hn::Lanes(D())]));
+      const M passed = hn::Ge(wanted, below);
+      chosen = hn::IfThenElse(passed, set(static_cast<float>(j)), chosen);
+      value = hn::IfThenElse(passed, hn::Load(D(), &values[j * hn::Lanes(D())]), value);
+    }
+    const auto turn = hn::ConvertTo(di, chosen);
+    const auto place = hn::And(hn::Iota(di, static_cast<std::int32_t>(first)),
+                               hn::Set(di, std::int32_t(positions - 1)));
+    const auto index = hn::Add(hn::Mul(turn, hn::Set(di, std::int32_t(stride))), place);
+    const V wx = hn::GatherIndex(D(), lights.x.data(), index),
+            wy = hn::GatherIndex(D(), lights.y.data(), index),
+            wz = hn::GatherIndex(D(), lights.z.data(), index);
+    const V cos_turn = hn::GatherIndex(D(), lights.cos_turn.data(), turn),
+            sin_turn = hn::GatherIndex(D(), lights.sin_turn.data(), turn);
+    // The light, turned back.
+    const V along = hn::Mul(dot(ax, ay, az, wx, wy, wz), hn::Sub(one, cos_turn));
+    store(hn::MulAdd(
+              along, ax,
+              hn::NegMulAdd(sin_turn, hn::MulSub(ay, wz, hn::Mul(az, wy)), hn::Mul(cos_turn, wx))),
+          batch.light_x, lane);
+    store(hn::MulAdd(
+              along, ay,
+              hn::NegMulAdd(sin_turn, hn::MulSub(az, wx, hn::Mul(ax, wz)), hn::Mul(cos_turn, wy))),
+          batch.light_y, lane);
+    store(hn::MulAdd(
+              along, az,
+              hn::NegMulAdd(sin_turn, hn::MulSub(ax, wy, hn::Mul(ay, wx)), hn::Mul(cos_turn, wz))),
+          batch.light_z, lane);
+    hn::StoreU(hn::Add(hn::Mul(turn, hn::Set(di, std::int32_t(positions))), place), di,
+               &batch.light[lane]);
+    store(
+        hn::Mul(load(batch.light_pdf, lane), hn::Div(hn::Mul(value, set(float(candidates))), sum)),
+        batch.light_pdf, lane);
+  }
+}
+
+void DrawExits(const ExitMedium& medium, ExitBatch& batch) {
+  const V one = set(1), n = set(medium.ior), sigma_s = set(medium.sigma_s);
+  for (std::size_t lane = 0; lane < batch.size; lane += hn::Lanes(D())) {
+    const V depth2 = load(batch.depth2, lane);
+    const V rho2 = hn::Sub(one, depth2), rho = hn::Sqrt(rho2);
+    const V largest = hn::Min(one, hn::Div(one, hn::Mul(hn::Mul(n, n), rho2)));       // sin^2
+    const V width = hn::Div(largest, hn::Add(one, hn::Sqrt(hn::Sub(one, largest))));  // 1 - cos
+    const V cos_beta = hn::NegMulAdd(width, load(batch.drawn, lane), one);
+    const V sin2_i = hn::Mul(rho2, hn::NegMulAdd(cos_beta, cos_beta, one));
+    const V cos_i = hn::Sqrt(hn::Sub(one, sin2_i));
+    const V cos_t = hn::Sqrt(hn::Max(set(0), hn::NegMulAdd(hn::Mul(n, n), sin2_i, one)));
+    const V distance = hn::Div(depth2, hn::MulAdd(rho, cos_beta, cos_i));
+    const V share = hn::Mul(hn::Mul(hn::Mul(set(0.5f), width), transmittance(n, cos_i, cos_t)),
+                            hn::Exp(D(), hn::Neg(hn::Mul(sigma_s, distance))));
+    store(share, batch.drawn_share, lane);
+    store(distance, batch.drawn_distance, lane);
+    store(hn::MulAdd(distance, cos_beta, rho), batch.drawn_cosine, lane);
+  }
+}
+
+void FindExits(const ExitMedium& medium, ExitBranch branch, Division division, ExitBatch& batch) {
   const V one = set(1), tiny = set(1e-6f);
   const V n = set(medium.ior), sigma_s = set(medium.sigma_s), g = set(medium.g);
   const bool far = branch != ExitBranch::near;
@@ -134,9 +249,7 @@ void FindExits(const ExitMedium& medium, ExitBranch branch, ExitBatch& batch) {
     const V wx = load(batch.light_x, lane), wy = load(batch.light_y, lane),
             wz = load(batch.light_z, lane);
     const V depth2 = load(batch.depth2, lane), rho = hn::Sqrt(hn::Sub(one, depth2));
-    const V n_rho = hn::Mul(n, rho), k_t = hn::Min(one, n_rho);
-    const Plane plane{Ratio(hn::Min(one, hn::Div(one, n_rho))), Ratio(k_t), Ratio(hn::Div(k_t, n)),
-                      far};
+    const Plane plane = plane_of(n, rho, far);
 
     // The wanted angle, and the direction across in the plane.
     const V cos_theta = hn::MulAdd(ux, wx, hn::MulAdd(uy, wy, hn::Mul(uz, wz)));
@@ -194,11 +307,9 @@ void FindExits(const ExitMedium& medium, ExitBranch branch, ExitBatch& batch) {
         hn::Div(hn::Mul(hn::NegMulAdd(g, g, one), set(quarter_inv_pi)), hn::Mul(q, hn::Sqrt(q)));
     const V pdf =
         hn::Mul(hn::Mul(phase, jacobian), hn::Exp(D(), hn::Neg(hn::Mul(sigma_s, distance))));
-    // Fresnel from inside.
-    const V rs = hn::Div(hn::MulSub(n, a.i.c, a.t.c), hn::MulAdd(n, a.i.c, a.t.c));
-    const V rp = hn::Div(hn::NegMulAdd(n, a.t.c, a.i.c), hn::MulAdd(n, a.t.c, a.i.c));
-    const V transmitted = hn::NegMulAdd(set(0.5f), hn::MulAdd(rs, rs, hn::Mul(rp, rp)), one);
-    const V share = hn::Div(hn::Mul(transmitted, pdf), hn::Add(pdf, load(batch.light_pdf, lane)));
+    const V by_walk = division == Division::balanced ? pdf : set(0);
+    const V share = hn::Div(hn::Mul(transmittance(n, a.i.c, a.t.c), pdf),
+                            hn::Add(by_walk, load(batch.light_pdf, lane)));
     store(hn::IfThenElseZero(reachable, hn::IfThenElse(root.found, share, set(-1))), batch.share,
           lane);
     store(distance, batch.distance, lane);
@@ -215,17 +326,46 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace translucube {
 
+HWY_EXPORT(ChooseLights);
 HWY_EXPORT(FindExits);
+HWY_EXPORT(DrawExits);
 
-double share(const Medium& medium, double ior, const SphereExit& exit, Vec3 before,
-             double light_pdf) {
-  const double pdf =
-      medium.phase(dot(before, exit.d)) * std::exp(-medium.sigma_s * exit.distance) * exit.jacobian;
-  return (1 - fresnel(exit.cos_i, 1 / ior)) * pdf / (light_pdf + pdf);
+LightStrata::LightStrata() {
+  for (std::size_t j = 0; j < candidates; ++j) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(j) / double(candidates);
+    cos_turn[j] = static_cast<float>(std::cos(angle));
+    sin_turn[j] = static_cast<float>(std::sin(angle));
+  }
 }
 
-void find_exits(const ExitMedium& medium, ExitBranch branch, ExitBatch& batch) {
-  HWY_DYNAMIC_DISPATCH(FindExits)(medium, branch, batch);
+void LightStrata::set(std::size_t i, Vec3 direction) {
+  const std::size_t first = i / positions * (positions + padding);
+  for (std::size_t at = i % positions; at < positions + padding; at += positions) {
+    x[first + at] = static_cast<float>(direction.x);
+    y[first + at] = static_cast<float>(direction.y);
+    z[first + at] = static_cast<float>(direction.z);
+  }
+}
+
+double share(const Medium& medium, double ior, const SphereExit& exit, Vec3 before,
+             double light_pdf, Division division) {
+  const double pdf =
+      medium.phase(dot(before, exit.d)) * std::exp(-medium.sigma_s * exit.distance) * exit.jacobian;
+  return (1 - fresnel(exit.cos_i, 1 / ior)) * pdf /
+         (light_pdf + (division == Division::balanced ? pdf : 0));
+}
+
+void choose_lights(const ExitMedium& medium, const LightStrata& lights, std::size_t position,
+                   ExitBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(ChooseLights)(medium, lights, position, batch);
+}
+
+void find_exits(const ExitMedium& medium, ExitBranch branch, Division division, ExitBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(FindExits)(medium, branch, division, batch);
+}
+
+void draw_exits(const ExitMedium& medium, ExitBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(DrawExits)(medium, batch);
 }
 
 }  // namespace translucube

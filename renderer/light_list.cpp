@@ -10,13 +10,17 @@ LightList::LightList(const Environment& environment, std::uint64_t key) {
   Rng rng(key);
   for (auto* floats : {&x, &y, &z, &pdf}) floats->resize(size);
   radiance.resize(size);
+  std::vector<Sample2> numbers;
+  numbers.reserve(size);
+  for (std::uint32_t i = 0; i < size; ++i)
+    numbers.push_back({(i + rng.uniform()) / size, rng.uniform()});
+  const std::vector<EnvironmentSample> lights = image->sample(numbers);
   for (std::uint32_t i = 0; i < size; ++i) {
-    const EnvironmentSample light = image->sample({(i + rng.uniform()) / size, rng.uniform()});
-    x[i] = static_cast<float>(light.direction.x);
-    y[i] = static_cast<float>(light.direction.y);
-    z[i] = static_cast<float>(light.direction.z);
-    pdf[i] = static_cast<float>(light.value.pdf);
-    radiance[i] = light.value.radiance;
+    x[i] = static_cast<float>(lights[i].direction.x);
+    y[i] = static_cast<float>(lights[i].direction.y);
+    z[i] = static_cast<float>(lights[i].direction.z);
+    pdf[i] = static_cast<float>(lights[i].value.pdf);
+    radiance[i] = lights[i].value.radiance;
   }
 }
 

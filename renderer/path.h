@@ -11,10 +11,14 @@ struct Path : Particle {
   Vec3 n;  ///< outward normal, at the boundary
   double weight = 1;
   double roulette = 0;  ///< weight below which chance decides
-  double pdf = 0;       ///< of d over the chance that the light there was looked for; 0: it was not
-  Vec3 vertex;          ///< where it was scattered last,
+  /// Of d over the chance that the light there was looked for; 0: it was not.
+  double pdf = 0;
+  /// In place of pdf: the light there is found by looking for it alone.
+  static constexpr double found_by_connecting = -1;
+  Vec3 vertex;       ///< where it was scattered last,
   double phase = 0;  ///< the density of d there if light was looked for from there; 0: it was not
   std::uint32_t pixel = 0, events = 0;
+  std::uint32_t walk = 0;  ///< which walk of the connector's
   /// Of the dipole model: colour so far, times back at the body from outside.
   std::uint32_t tint = 0, arrivals = 0;
   PathSampler sampler;

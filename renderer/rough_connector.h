@@ -23,6 +23,7 @@ class RoughConnector {
   /// straight out from deeper ones.
   double margin() const { return active() ? 3 : 0; }
 
+  void start(Path&) {}
   /// From path.p, where it comes along path.d; before its new direction is chosen.
   void connect(Path& path);
   /// Collects what is under way.

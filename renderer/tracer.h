@@ -29,11 +29,13 @@ namespace translucube {
 /// cheap, high where each turn is a long walk (chosen by relMSE x CPU on the peers' materials).
 inline constexpr double roulette_of_clear = 1.0 / 64;
 /// The same for a scattered path, relative to its weight at the first scattering.
-inline constexpr double roulette_of_scattered = 1.0 / 2;
+inline constexpr double roulette_of_scattered = 1.0 / 4;
 /// The same inside a clear body under a rough interface.
 inline constexpr double roulette_of_rough = 1.0 / 8;
 /// Lights that a collision with a microfacet looks for.
 inline constexpr std::uint32_t lights_of_a_collision = 8;
+/// Below this scattering coefficient [1 / unit] a walk is so short that a camera sample starts two.
+inline constexpr double short_walk_sigma_s = 2;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
 /// light that is trapped gets there, for good (a camera inside a clear body) or, in a mesh, for
 /// nearly as long (a medium of millions of bounding radii to the mean free path).
@@ -316,11 +318,14 @@ class Tracer {
     collector_.note("escape", path);
     if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
       return collector_.collect(path, uniform->radiance, path.weight);
+    if constexpr (connecting && smooth)
+      if (path.pdf == Path::found_by_connecting)
+        return collector_.collect(path, connector_.expected(path.n, path.walk), path.weight);
     const std::size_t i = escaping_.size++;
     escaping_.x[i] = static_cast<float>(path.d.x);
     escaping_.y[i] = static_cast<float>(path.d.y);
     escaping_.z[i] = static_cast<float>(path.d.z);
-    escapes_[i] = {path.n, path.length, path.weight, path.pdf, path.pixel, path.tint};
+    escapes_[i] = {path.n, path.length, path.weight, path.pdf, path.walk, path.pixel, path.tint};
     if (escaping_.size == EnvironmentBatch::capacity) collect_escapes();
   }
 
@@ -334,7 +339,7 @@ class Tracer {
       if (from.pdf > 0 && scene_.next_event_estimation) {  // it was looked for as well
         const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
         if constexpr (connecting && smooth) {
-          const Rgb expected = connector_.expected(from.n);
+          const Rgb expected = connector_.expected(from.n, from.walk);
           radiance = expected + (radiance - expected) * share;
         } else {
           radiance = radiance * share;
@@ -377,7 +382,7 @@ class Tracer {
   struct Escape {
     Vec3 n;
     double length, weight, pdf;
-    std::uint32_t pixel, tint;
+    std::uint32_t walk, pixel, tint;
   };
   EnvironmentBatch escaping_;
   std::array<Escape, EnvironmentBatch::capacity> escapes_;

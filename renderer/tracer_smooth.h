@@ -67,14 +67,19 @@ void Tracer<Shape, Interface, Interior>::follow_unscattered(Path path) {
   }
   if constexpr (scattering) {
     if (scattered_weight <= 0) return;
-    scattered.weight = scattered_weight;
-    // Its own numbers from here on: those that it was copied with have decided over `path` since.
-    scattered.sampler = path.sampler.split();
-    if (!scattered.survives()) return;
-    scattered.roulette = roulette_of_scattered * scattered.weight;
-    collector_.note("scatter", scattered);
-    scatter_at(shape_, scattered);
-    walking_.push_back(scattered);
+    const int walks = interior_.medium.sigma_s < short_walk_sigma_s ? 2 : 1;
+    scattered.weight = scattered_weight / walks;
+    for (int i = 0; i < walks; ++i) {
+      Path walk = scattered;
+      // Its own numbers from here on: those that it was copied with have decided over `path` since.
+      walk.sampler = path.sampler.split();
+      if (!walk.survives()) continue;
+      walk.roulette = roulette_of_scattered * walk.weight;
+      collector_.note("scatter", walk);
+      connector_.start(walk);
+      scatter_at(shape_, walk);
+      walking_.push_back(walk);
+    }
   }
 }
 

@@ -106,7 +106,8 @@ TEST(SphereExits, ManyAtATimeAreTheSameAsOne) {
           lights.push_back(random_direction(rng));
           batch->push(places[i], 1 - depth, before[i], lights[i], 0.1);
         }
-        find_exits({float(ior), float(medium.sigma_s), float(g)}, branch, *batch);
+        find_exits({float(ior), float(medium.sigma_s), float(g)}, branch, Division::balanced,
+                   *batch);
         int not_found = 0, differ = 0;
         for (std::size_t i = 0; i < ExitBatch::capacity; ++i) {
           if (batch->share[i] < 0) {
@@ -115,7 +116,7 @@ TEST(SphereExits, ManyAtATimeAreTheSameAsOne) {
           }
           double expected = 0, distance = 0;
           if (const auto exit = SphereExits(ior, places[i]).towards(lights[i], branch)) {
-            expected = share(medium, ior, *exit, before[i], 0.1);
+            expected = share(medium, ior, *exit, before[i], 0.1, Division::balanced);
             distance = exit->distance;
           }
           const bool same =
@@ -127,6 +128,113 @@ TEST(SphereExits, ManyAtATimeAreTheSameAsOne) {
         EXPECT_LE(differ, 2) << int(branch) << " ior " << ior;
         EXPECT_LE(not_found, 8) << int(branch) << " ior " << ior;
       }
+}
+
+/// Lights from everywhere, equally bright.
+void fill(LightStrata& lights, Rng& rng) {
+  for (std::size_t i = 0; i < LightStrata::size; ++i) lights.set(i, random_direction(rng));
+}
+
+/// A batch of the same vertex, on a walk that started elsewhere.
+void fill(ExitBatch& batch, double rho, Rng& rng) {
+  batch.size = 0;
+  const Vec3 p = rho * random_direction(rng), axis = random_direction(rng);
+  for (std::size_t i = 0; i < ExitBatch::capacity; ++i) {
+    batch.axis_x[i] = static_cast<float>(axis.x);
+    batch.axis_y[i] = static_cast<float>(axis.y);
+    batch.axis_z[i] = static_cast<float>(axis.z);
+    batch.choice[i] = static_cast<float>(rng.uniform());
+    batch.drawn[i] = static_cast<float>(rng.uniform());
+    batch.push(p, rho, random_direction(rng), {}, 1);
+  }
+}
+
+struct Mean {
+  double sum = 0, squares = 0;
+  int n = 0;
+  void add(double value) {
+    sum += value;
+    squares += value * value;
+    ++n;
+  }
+  double mean() const { return sum / n; }
+  double standard_error() const { return std::sqrt((squares / n - mean() * mean()) / n); }
+};
+
+TEST(SphereExits, ChosenLightsAndDrawnWaysHaveTheShareAndLengthOfAllThatLeaves) {
+  Rng rng(6);
+  auto batch = std::make_unique<ExitBatch>();
+  auto lights = std::make_unique<LightStrata>();
+  for (const double ior : {1.0, 1.33, 1.5, 2.5})
+    for (const double rho : {0.05, 0.4, 0.67, 0.9, 0.999}) {
+      const double sigma_s = rho > 0.8 ? 0.5 / (1 - rho) : 1;
+      const ExitMedium medium{float(ior), float(sigma_s), 0};
+      // Isotropic light on the near branch, by the midpoint rule in the cosine.
+      double share = 0, length = 0;
+      constexpr int steps = 200'000;
+      for (int i = 0; i < steps; ++i) {
+        const double cosine = (i + 0.5) / steps, sin2_i = rho * rho * (1 - cosine * cosine);
+        if (ior * ior * sin2_i >= 1) continue;
+        const double cos_i = std::sqrt(1 - sin2_i);
+        const double distance = (1 - rho) * (1 + rho) / (cos_i + rho * cosine);
+        const double out =
+            0.5 / steps * (1 - fresnel(cos_i, 1 / ior)) * std::exp(-sigma_s * distance);
+        share += out;
+        length += out * distance;
+      }
+      Mean chosen, chosen_length, drawn, drawn_length;
+      for (int repeat = 0; repeat < 400; ++repeat) {
+        fill(*lights, rng);
+        fill(*batch, rho, rng);
+        choose_lights(medium, *lights, rng.bits() % LightStrata::positions, *batch);
+        find_exits(medium, ExitBranch::near, Division::connected, *batch);
+        draw_exits(medium, *batch);
+        // The vertices of a batch share their lights: its means are what is independent.
+        Mean of_chosen, of_chosen_length;
+        for (std::size_t i = 0; i < batch->size; ++i) {
+          const double found = std::fmax(0, batch->share[i]) * 4 * std::numbers::pi;
+          of_chosen.add(found);
+          of_chosen_length.add(found > 0 ? found * batch->distance[i] : 0);
+          drawn.add(batch->drawn_share[i]);
+          drawn_length.add(double(batch->drawn_share[i]) * batch->drawn_distance[i]);
+        }
+        chosen.add(of_chosen.mean());
+        chosen_length.add(of_chosen_length.mean());
+      }
+      const auto expect = [&](const Mean& mean, double truth) {
+        EXPECT_NEAR(mean.mean(), truth, 4 * mean.standard_error() + 1e-4 * truth)
+            << "ior " << ior << " rho " << rho;
+        EXPECT_LT(mean.standard_error(), 0.01 * truth) << "ior " << ior << " rho " << rho;
+      };
+      expect(chosen, share);
+      expect(chosen_length, length);
+      expect(drawn, share);
+      expect(drawn_length, length);
+    }
+}
+
+TEST(SphereExits, AChosenLightIsOneOfTheListTurnedAboutTheAxis) {
+  Rng rng(7);
+  auto batch = std::make_unique<ExitBatch>();
+  auto lights = std::make_unique<LightStrata>();
+  std::vector<Vec3> directions;
+  for (std::size_t i = 0; i < LightStrata::size; ++i) {
+    directions.push_back(random_direction(rng));
+    lights->set(i, directions[i]);
+  }
+  fill(*batch, 0.9, rng);
+  choose_lights({1.5f, 1, 0}, *lights, 100, *batch);
+  for (std::size_t i = 0; i < batch->size; ++i) {
+    const Vec3 axis{batch->axis_x[i], batch->axis_y[i], batch->axis_z[i]};
+    const Vec3 light{batch->light_x[i], batch->light_y[i], batch->light_z[i]};
+    const Vec3 original = directions[batch->light[i]];
+    EXPECT_NEAR(length(light), 1, 1e-5);
+    EXPECT_NEAR(dot(light, axis), dot(original, axis), 1e-5);
+    const double turn = 2 * std::numbers::pi / LightStrata::candidates *
+                        double(std::size_t(batch->light[i]) / LightStrata::positions);
+    const Vec3 across = original - dot(original, axis) * axis;
+    EXPECT_NEAR(dot(light, across), std::cos(turn) * length_squared(across), 1e-5);
+  }
 }
 
 TEST(SphereExits, InstructionSetsDifferByRoundingAlone) {
@@ -142,7 +250,7 @@ TEST(SphereExits, InstructionSetsDifferByRoundingAlone) {
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
       hwy::SetSupportedTargetsForTest(target);
       hwy::GetChosenTarget().DeInit();
-      find_exits({1.5f, 2, 0.3f}, branch, *batch);
+      find_exits({1.5f, 2, 0.3f}, branch, Division::balanced, *batch);
       shares[hwy::TargetName(target)] = batch->share;
       hwy::SetSupportedTargetsForTest(0);
       hwy::GetChosenTarget().DeInit();
@@ -160,6 +268,44 @@ TEST(SphereExits, InstructionSetsDifferByRoundingAlone) {
       EXPECT_EQ(shares["AVX2"], shares["AVX3"]);
     }
     EXPECT_GE(shares.size(), 2u);
+  }
+}
+
+TEST(SphereExits, InstructionSetsChooseAndDrawTheSame) {
+  Rng rng(8);
+  auto lights = std::make_unique<LightStrata>();
+  fill(*lights, rng);
+  auto vertices = std::make_unique<ExitBatch>();
+  fill(*vertices, 0.9, rng);
+  std::map<std::string, std::unique_ptr<ExitBatch>> results;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
+    auto batch = std::make_unique<ExitBatch>(*vertices);
+    choose_lights({1.5f, 2, 0}, *lights, 120, *batch);
+    draw_exits({1.5f, 2, 0}, *batch);
+    results[hwy::TargetName(target)] = std::move(batch);
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().DeInit();
+  }
+  const ExitBatch& first = *results.begin()->second;
+  for (const auto& [name, batch] : results) {
+    int differ = 0;
+    for (std::size_t i = 0; i < first.size; ++i) {
+      differ += batch->light[i] != first.light[i];
+      EXPECT_NEAR(batch->drawn_share[i], first.drawn_share[i], 1e-5) << name;
+      EXPECT_NEAR(batch->drawn_distance[i], first.drawn_distance[i], 1e-5) << name;
+    }
+    EXPECT_LE(differ, 2) << name;
+  }
+  if (results.contains("AVX2") && results.contains("AVX3")) {
+    const ExitBatch &a = *results["AVX2"], &b = *results["AVX3"];
+    EXPECT_EQ(a.light, b.light);
+    EXPECT_EQ(a.light_x, b.light_x);
+    EXPECT_EQ(a.light_pdf, b.light_pdf);
+    EXPECT_EQ(a.drawn_share, b.drawn_share);
+    EXPECT_EQ(a.drawn_distance, b.drawn_distance);
+    EXPECT_EQ(a.drawn_cosine, b.drawn_cosine);
   }
 }
 
