@@ -29,7 +29,10 @@ constexpr Section sections[] = {{"materials", materials},
                                 {"sweeps", sweeps},
                                 {"cores", cores},
                                 {"pixels", pixels},
-                                {"meshes", meshes}};
+                                {"meshes", meshes},
+                                {"latency", latency},
+                                {"stopping", stopping},
+                                {"sun", hard_sun}};
 
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
@@ -81,6 +84,9 @@ int main(int argc, char** argv) {
   app.add_option("--samples", run.material_samples,
                  "camera samples in the sections `materials` and `single`")
       ->check(CLI::Range(1, 1 << 20));
+  app.add_option("--sun", run.sun,
+                 "sunrise.exr; looked for in config/environments and ../shared/environments")
+      ->check(CLI::ExistingFile);
   app.add_option("--out", out, "folder to write the documents to");
   app.add_option("--json", json, "file to write the figures to");
   app.add_option("--check", committed,
