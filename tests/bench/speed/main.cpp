@@ -32,7 +32,8 @@ constexpr Section sections[] = {{"materials", materials},
                                 {"meshes", meshes},
                                 {"latency", latency},
                                 {"stopping", stopping},
-                                {"sun", hard_sun}};
+                                {"sun", hard_sun},
+                                {"profile", profile}};
 
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
@@ -97,8 +98,13 @@ int main(int argc, char** argv) {
       "--write-guard", guard_file,
       "nothing but this: writes tests/renderer/efficiency.json, the ceilings of variance "
       "and counted work");
-  std::vector<int> film;  // what the section `pixels` asks of a process of its own
+  // What sections ask of a process of its own.
+  std::vector<int> film;
+  std::string rendered;
+  int size = 128;
   app.add_option("--film-memory", film)->expected(2)->group("");
+  app.add_option("--render", rendered)->group("");
+  app.add_option("--size", size)->group("");
   CLI11_PARSE(app, argc, argv);
   try {
     if (!film.empty()) {
@@ -107,6 +113,11 @@ int main(int argc, char** argv) {
     }
     if (!guard_file.empty()) {
       write(guard_file, guard());
+      return 0;
+    }
+    if (!rendered.empty()) {
+      run.materials = {rendered};
+      render_to_profile(run, size);
       return 0;
     }
     const Report report = measure(run, only);

@@ -26,6 +26,8 @@ Tables latency(Run& run);
 Tables stopping(Run& run);
 Tables hard_sun(Run& run);
 Tables profile(Run& run);
+/// Renders run.materials, for the tools that look at this program from outside.
+void render_to_profile(const Run& run, int size);
 Tables cycles(Run& run);
 
 }  // namespace translucube::speed

@@ -51,12 +51,18 @@ double true_over_reported(Run& run, SceneSpec spec, double target) {
       pilot.stats.relative_error * std::sqrt(std::fmin(1, pilot.stats.cpu_seconds / cpu_seconds));
   const RenderResult stopped =
       render(*scene, ErrorTarget{std::fmax(target, affordable)}, run.threads);
-  spec.seed = run.next_seed();
-  const RenderResult reference = render(
-      *build_scene(spec), SampleTarget{reference_factor * stopped.stats.samples}, run.threads);
-  const double noise = reference.stats.relative_error;
-  const double off = rel_mse(develop(stopped.film), develop(reference.film)).trimmed;
-  return std::sqrt(std::fmax(0, off - noise * noise)) / stopped.stats.relative_error;
+  std::vector<Image> references;
+  for (int i = 0; i < 2; ++i) {
+    spec.seed = run.next_seed();
+    references.push_back(
+        develop(render(*build_scene(spec),
+                       SampleTarget{reference_factor / 2 * stopped.stats.samples}, run.threads)
+                    .film));
+  }
+  const Image reference = mean_of(references);
+  const double noise = rel_mse_of_pair(references[0], references[1], reference).trimmed / 2;
+  const double off = rel_mse(develop(stopped.film), reference).trimmed;
+  return std::sqrt(std::fmax(0, off - noise)) / stopped.stats.relative_error;
 }
 
 void add(Table& table, const char* row, std::vector<double> ratios) {
