@@ -33,7 +33,8 @@ constexpr Section sections[] = {{"materials", materials},
                                 {"latency", latency},
                                 {"stopping", stopping},
                                 {"sun", hard_sun},
-                                {"profile", profile}};
+                                {"profile", profile},
+                                {"cycles", cycles}};
 
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
@@ -88,6 +89,8 @@ int main(int argc, char** argv) {
   app.add_option("--sun", run.sun,
                  "sunrise.exr; looked for in config/environments and ../shared/environments")
       ->check(CLI::ExistingFile);
+  app.add_flag("--cycles", run.cycles,
+               "render the same in Blender's Cycles, where it is installed");
   app.add_option("--out", out, "folder to write the documents to");
   app.add_option("--json", json, "file to write the figures to");
   app.add_option("--check", committed,

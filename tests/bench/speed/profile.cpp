@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
@@ -19,6 +18,7 @@
 #include "renderer/walk.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
+#include "tests/bench/speed/shell.h"
 
 namespace translucube::speed {
 namespace {
@@ -26,21 +26,6 @@ namespace {
 constexpr const char* profiled[] = {"A0", "R10", "S10", "S100"};
 
 // ---- other tools, on this program rendering one material with --render
-
-struct Ran {
-  bool succeeded = false;
-  std::string output;
-};
-Ran run_shell(const std::string& command) {
-  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (!pipe) return {};
-  Ran ran;
-  char buffer[4096];
-  for (std::size_t got; (got = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
-    ran.output.append(buffer, got);
-  ran.succeeded = pclose(pipe) == 0;
-  return ran;
-}
 
 std::string self() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
 
@@ -79,7 +64,7 @@ Table by_function(Run& run) {
   Table table{"functions", "Profile by function",
               "Share of the CPU time of a sample in percent, as `perf record` sees it: compilers "
               "inline most of the stages, so that *stages* holds what has no function of its own."};
-  if (!run_shell("command -v perf").succeeded) {
+  if (!is_installed("perf")) {
     table.remark = "Not measured: `perf` is not installed.";
     return table;
   }
@@ -88,23 +73,29 @@ Table by_function(Run& run) {
   for (const char* material : profiled) {
     if (!run.chosen(material)) continue;
     const Ran recorded =
-        run_shell("perf record -q -o " + file + " -- " + rendering(material, run.samples(32)));
-    const Ran report =
-        run_shell("perf report -i " + file + " --stdio --no-children -F overhead,symbol -g none");
+        run_shell("perf record -q -o " + file + " -- " + rendering(material, run.samples(128)));
+    const Ran report = run_shell("perf report -i " + file +
+                                 " --stdio --no-children -F overhead,dso,symbol -g none");
     std::filesystem::remove(file);
     if (!recorded.succeeded || !report.succeeded) {
       table.remark = "Not measured: `perf` is not allowed to look.";
       return table;
     }
     std::map<std::string, double> shares;
+    double all = 0;
     std::istringstream lines(report.output);
     for (std::string line; std::getline(lines, line);) {
       const std::size_t symbol = line.find("[.] ");
-      if (line.starts_with('#') || symbol == line.npos) continue;
-      shares[part_of(line.substr(symbol + 4))] += std::strtod(line.c_str(), nullptr);
+      // The loading of the process is not the sample's, nor what the kernel does.
+      if (line.starts_with('#') || symbol == line.npos || line.find("ld-linux") != line.npos)
+        continue;
+      const double share = std::strtod(line.c_str(), nullptr);
+      shares[part_of(line.substr(symbol + 4))] += share;
+      all += share;
     }
-    for (const Part& part : parts()) table.add(part.name, {material, "%.1f"}, shares[part.name]);
-    table.add("other", {material, "%.1f"}, shares["other"]);
+    const Quantity percent{material, "%.1f"};
+    for (const Part& part : parts()) table.add(part.name, percent, 100 * shares[part.name] / all);
+    table.add("other", percent, 100 * shares["other"] / all);
   }
   return table;
 }
@@ -129,7 +120,7 @@ Table by_instructions(Run& run) {
               "boundary events and next-event estimations. The bound is what they would take at 4 "
               "instructions a cycle and 3 GHz: what the same instructions could reach at best; to "
               "go beyond it takes fewer instructions an event or fewer events."};
-  if (!run_shell("command -v valgrind").succeeded) {
+  if (!is_installed("valgrind")) {
     table.remark = "Not measured: `valgrind` is not installed.";
     return table;
   }
@@ -220,9 +211,10 @@ Table one_by_one(Run& run) {
     const Sample2 u = sampler.next2();
     sink = scene->camera.direction(100 + u.u, 90 + u.v).x;
   });
-  measure("environment look-up",
+  measure("environment look-up, at random",
           [&] { sink = environment.radiance_from(sample_isotropic(rng)).r; });
-  measure("environment sample", [&] { sink = environment.sample(rng.uniform2()).value.pdf; });
+  measure("environment sample, at random",
+          [&] { sink = environment.sample(rng.uniform2()).value.pdf; });
   measure("smooth boundary event", [&] {
     const Vec3 w = sample_isotropic(rng), wo{w.x, w.y, std::fabs(w.z)}, n{0, 0, 1};
     sink = fresnel(wo.z, 1.5) + refract(wo, n, 1.5)->z + reflect(wo, n).x;
