@@ -31,7 +31,7 @@ std::string data(const Table& table, const std::string& name, const std::string&
 std::string error(const Table& table) {
   std::string script =
       "set multiplot layout 3,4\nset logscale xy\nset format '10^{%L}'\nset bmargin 3\n"
-      "set key inside bottom left vertical samplen 1 font ',10'\nset tics font ',10'\n"
+      "set key inside top right vertical samplen 1 font ',10'\nset tics font ',10'\n"
       "set xlabel 'CPU s' font ',10' offset 0,.7\n";
   for (const test::PeerMaterial& material : test::peer_materials) {
     const std::string name = material.name;

@@ -192,11 +192,10 @@ double flight_ns(double sigma_s, int walks) {
 
 Table one_by_one(Run& run) {
   constexpr Quantity ns{"ns", "%.1f"};
-  Table table{
-      "events", "Events one by one",
-      "What the pieces of the reference code take in a loop of their own, their data in the "
-      "cache: the best of seven loops. A walk of many lanes at once is below the flight "
-      "shown here."};
+  Table table{"events", "Events one by one",
+              "What the pieces of the reference code take in a loop of their own: the best of "
+              "seven. A walk of many lanes at once is below the flight "
+              "shown here."};
   const int calls = std::max(1000, static_cast<int>(2e5 * std::fmin(1, run.effort)));
   const auto scene = build_scene(peer_scene({1, .1, 10}, 256, 1));
   const auto& environment = std::get<ImageEnvironment>(scene->environment);
