@@ -38,7 +38,7 @@ class Clearing {
   /// The smallest large step [mean free paths].
   static constexpr double smallest = 2;
   /// How much larger than the known one a step may have to be for a query to pay; by CPU time
-  /// (tests/bench/meshes.cpp).
+  /// (tests/bench/speed/meshes.cpp).
   static constexpr double worth_a_query = 8;
   /// In units of the body: what adding up a position may lose in double precision, a thousandfold.
   static constexpr double rounding = 1e-12;

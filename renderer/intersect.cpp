@@ -198,7 +198,7 @@ DistanceBounds Mesh::finer_distance_bounds(Vec3 p) const {
 }
 
 DistanceBounds Mesh::distance(Vec3 p, double most) const {
-  constexpr double keen = 0.6;  // by CPU time (tests/bench/meshes.cpp)
+  constexpr double keen = 0.6;  // by CPU time (tests/bench/speed/meshes.cpp)
   return nearest_face(*geometry_, p, most, keen);
 }
 

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <thread>
@@ -21,38 +20,11 @@
 #include "server/file.h"
 #include "server/job_service.h"
 #include "server/job_store.h"
+#include "tests/server/temp_folder.h"
 
 namespace translucube::server::test {
 
 inline const std::string config_path = TRANSLUCUBE_SOURCE_DIR "/config/service.json";
-
-class TempFolder {
- public:
-  TempFolder()
-      : path_(std::filesystem::temp_directory_path() / ("translucube-test-" + random_hex(8))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline std::string read_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-inline void write_file(const std::filesystem::path& file, std::string_view bytes) {
-  std::ofstream(file, std::ios::binary).write(bytes.data(), std::ssize(bytes));
-}
 
 /// A request of `samples` samples per pixel of a tiny image: 4 samples make a pass at first.
 inline std::string small_request(int samples, int seed = 1, int size = 8) {

@@ -3,12 +3,12 @@
 #include "tests/server/process.h"
 
 #include <gmock/gmock.h>
-#include <httplib.h>
 
 #include <nlohmann/json.hpp>
 
 #include "renderer/image_io.h"
 #include "tests/server/fixture.h"
+#include "tests/server/service.h"
 
 namespace translucube::server::test {
 namespace {
@@ -16,37 +16,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::MatchesRegex;
 using testing::StartsWith;
-
-class Service {
- public:
-  explicit Service(const std::filesystem::path& data, const std::string& threads = "2")
-      : process_({TRANSLUCUBE_BINARY, "serve", "--port", "0", "--data", data.string(), "--threads",
-                  threads}) {
-    const std::string line = process_.line();
-    EXPECT_THAT(line, MatchesRegex("listening on http://127\\.0\\.0\\.1:[0-9]+"));
-    const auto colon = line.rfind(':');
-    if (colon == line.npos) throw std::runtime_error("the service did not start");
-    port_ = std::stoi(line.substr(colon + 1));
-  }
-
-  json get(const std::string& path) const {
-    const auto answer = client().Get(path);
-    return answer ? json::parse(answer->body) : json();
-  }
-  httplib::Client client() const {
-    httplib::Client client("127.0.0.1", port_);
-    client.set_read_timeout(120);
-    return client;
-  }
-  Process& process() { return process_; }
-  int port() const { return port_; }
-
- private:
-  Process process_;
-  int port_ = 0;
-};
 
 std::vector<float> pixels(const std::filesystem::path& file) { return read_image(file).pixels; }
 

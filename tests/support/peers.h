@@ -6,10 +6,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "tests/support/scenes.h"
 
 namespace translucube::test {
+
+struct PeerMaterial {
+  const char* name;
+  Coefficients coefficients;  ///< absorption times (0.15, 1, 1)
+};
+inline constexpr std::array peer_materials = {
+    PeerMaterial{"A0", {0, 0, 0}},    PeerMaterial{"A2", {1, 0, 0}},
+    PeerMaterial{"R05", {0, .05, 0}}, PeerMaterial{"R10", {0, .1, 0}},
+    PeerMaterial{"R25", {0, .25, 0}}, PeerMaterial{"R50", {0, .5, 0}},
+    PeerMaterial{"S01", {0, 0, .1}},  PeerMaterial{"S1", {0, 0, 1}},
+    PeerMaterial{"S10", {0, 0, 10}},  PeerMaterial{"S100", {0, 0, 100}},
+    PeerMaterial{"M", {.2, .1, 5}},   PeerMaterial{"C", {1, 0, 10}}};
+/// Expects a name of the list.
+inline const PeerMaterial& peer_material(std::string_view name) {
+  return *std::ranges::find(peer_materials, name, &PeerMaterial::name);
+}
 
 /// A sphere of 1 mm in the forest; absorption is red (0.15, 1, 1).
 inline SceneSpec peer_scene(const Coefficients& coefficients, int size, std::uint64_t seed) {

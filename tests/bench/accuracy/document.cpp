@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "tests/bench/report/markdown.h"
+
 namespace translucube::accuracy {
 namespace {
 
@@ -44,28 +46,18 @@ std::string cell(const Figure* figure) {
   return out;
 }
 
-/// A row for each figure's row and a column for each quantity, in the order of their first coming.
+/// A row for each figure's row and a column for each quantity.
 std::string columns(const Table& table, bool soft) {
   std::vector<std::string> rows, quantities;
   for (const Figure& figure : table.figures) {
     if (figure.soft != soft) continue;
-    if (!std::ranges::count(rows, figure.row)) rows.push_back(figure.row);
-    if (!std::ranges::count(quantities, figure.column)) quantities.push_back(figure.column);
+    bench::remember(rows, figure.row);
+    bench::remember(quantities, figure.column);
   }
-  std::string head = "| |", line = "|---|", body;
-  for (const std::string& quantity : quantities) {
-    head += " " + quantity + " |";
-    line += "---|";
-  }
-  for (const std::string& row : rows) {
-    body += "| " + row + " |";
-    for (const std::string& quantity : quantities) {
-      const Figure* figure = table.find(row, quantity);
-      body += " " + (soft && figure ? text("%.0f", figure->measured.mean) : cell(figure)) + " |";
-    }
-    body += "\n";
-  }
-  return head + "\n" + line + "\n" + body;
+  return bench::grid(rows, quantities, [&](const std::string& row, std::size_t column) {
+    const Figure* figure = table.find(row, quantities[column]);
+    return soft && figure ? text("%.0f", figure->measured.mean) : cell(figure);
+  });
 }
 
 std::string verdict_text(const Report& report) {

@@ -5,25 +5,19 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tests/bench/report/text.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::accuracy {
 
 using test::Estimate;
 
-/// As printf.
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char line[400];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
+using bench::text;
 
 /// A known value. `error`: its standard error, 0 where it is exact. `tolerance`: how far its source
 /// does not claim to be right, or a bound to keep; such a figure is held to it and has no z.

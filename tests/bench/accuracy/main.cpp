@@ -3,16 +3,17 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/bench/accuracy/document.h"
 #include "tests/bench/accuracy/sections.h"
+#include "tests/bench/report/files.h"
 
 namespace {
 
 using namespace translucube::accuracy;
+using translucube::bench::process_cpu_seconds, translucube::bench::write;
 
 struct Section {
   const char* id;
@@ -31,8 +32,6 @@ constexpr Section sections[] = {{"furnace", white_furnaces},
                                 {"lambertian", interfaced_lambertian},
                                 {"dipole", dipole}};
 
-double process_cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
 /// Sections have random numbers of their own, so that one alone gives the figures of all.
 Report measure(double effort, std::uint64_t seed, int threads, const std::string& only) {
   Report report{{}, effort, 0, seed};
@@ -47,12 +46,6 @@ Report measure(double effort, std::uint64_t seed, int threads, const std::string
   }
   report.cpu_seconds = process_cpu_seconds() - start;
   return report;
-}
-
-void write(const std::filesystem::path& file, const std::string& content) {
-  std::ofstream out(file);
-  out << content;
-  if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
 }
 
 }  // namespace

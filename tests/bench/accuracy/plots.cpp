@@ -1,17 +1,12 @@
-// Plots by gnuplot, on white so that they read on dark pages too, in the colours of Okabe and Ito
-// (2008).
+// The plots of the tables that have one.
 
-#include <cstdio>
 #include <cstdlib>
-#include <memory>
-#include <stdexcept>
 
 #include "tests/bench/accuracy/document.h"
+#include "tests/bench/report/gnuplot.h"
 
 namespace translucube::accuracy {
 namespace {
-
-constexpr const char* colors[] = {"#000000", "#0072B2", "#D55E00", "#009E73"};
 
 /// The number at the end of a row's name.
 double abscissa(const std::string& row) {
@@ -41,7 +36,7 @@ std::string lengths(const Table& table) {
     plot += text(
         "%s$d%d using ($1*%g):(100*($2-1)):(100*$3) with yerrorbars pt 7 ps .6 lc '%s' "
         "title 'ior %s'",
-        i ? ", " : "plot 0 lc '#888888' notitle, ", i, std::pow(1.12, i - 1.5), colors[i],
+        i ? ", " : "plot 0 lc '#888888' notitle, ", i, std::pow(1.12, i - 1.5), bench::colors[i],
         indices[i]);
   }
   return script +
@@ -89,33 +84,17 @@ std::string dipole(const Table& table) {
          "(right)'";
 }
 
-void draw(const std::string& script, const std::filesystem::path& file) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen("gnuplot", "w"), pclose);
-  const std::string all =
-      "set terminal svg size 720,400 font 'sans-serif,13' background rgb 'white'\n"
-      "set output '" +
-      file.string() +
-      "'\nset border 3 lc '#444444'\nset key outside bottom center horizontal\nset bmargin 6\nset "
-      "tics nomirror\n"
-      "set grid lc '#dddddd'\n" +
-      script + "\n";
-  if (!pipe || std::fputs(all.c_str(), pipe.get()) < 0 || std::fflush(pipe.get()) != 0)
-    throw std::runtime_error("cannot run gnuplot");
-}
-
 }  // namespace
 
 void draw_plots(const Report& report, const std::filesystem::path& folder) {
-  if (std::system("command -v gnuplot >/dev/null") != 0)
-    throw std::runtime_error(
-        "plots need gnuplot: bash .ci/install_packages.sh .ci/docs_packages.txt");
+  bench::require_gnuplot();
   std::filesystem::create_directories(folder);
   for (const Table& table : report.tables) {
     const std::filesystem::path file = folder / (table.id + ".svg");
-    if (table.id == "lengths") draw(lengths(table), file);
-    if (table.id == "microfacets") draw(microfacets(table), file);
-    if (table.id == "explorable") draw(explorable(table), file);
-    if (table.id == "dipole") draw(dipole(table), file);
+    if (table.id == "lengths") bench::draw(lengths(table), file);
+    if (table.id == "microfacets") bench::draw(microfacets(table), file);
+    if (table.id == "explorable") bench::draw(explorable(table), file);
+    if (table.id == "dipole") bench::draw(dipole(table), file);
   }
 }
 

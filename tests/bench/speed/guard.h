@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace translucube::speed {
+
+/// The ceilings that tests/renderer/efficiency_test.cpp holds the renderer to, as JSON text:
+/// measured now, with room for chance.
+std::string guard();
+
+}  // namespace translucube::speed

@@ -1,0 +1,88 @@
+// A sun of 33,664 in the environment: what looking for light is worth there, and the fireflies that
+// are left.
+
+#include <algorithm>
+
+#include "renderer/scene_data.h"
+#include "tests/bench/speed/images.h"
+#include "tests/bench/speed/sections.h"
+#include "tests/bench/speed/sunrise.h"
+
+namespace translucube::speed {
+namespace {
+
+constexpr int size = 96, references = 4;
+constexpr Quantity with{"untrimmed × CPU s"}, without{"without NEE"}, gain{"gain", "%.1f"},
+    trimmed{"trimmed × CPU s"}, largest{"largest pixel / converged", "%.2f"};
+
+struct Rendered {
+  Image image;
+  double cpu_seconds = 0;
+};
+Rendered render_once(Run& run, const PeerMaterial& material, std::uint32_t samples, bool looking) {
+  SceneSpec spec = peer_scene(material.coefficients, size, run.next_seed());
+  spec.environment.source = ImageEnvironmentSpec{sunrise(run)};
+  Scene scene = *build_scene(spec);
+  scene.next_event_estimation = looking;
+  Snapshot end = std::move(trace(scene, {samples}, run.threads).front());
+  return {std::move(end.image), end.cpu_seconds};
+}
+
+struct Cost {
+  double trimmed, untrimmed;  ///< relMSE x CPU s
+};
+Cost cost(const Rendered& a, const Rendered& b, const Image& reference) {
+  const RelMse error = rel_mse_of_pair(a.image, b.image, reference);
+  const double seconds = (a.cpu_seconds + b.cpu_seconds) / 2;
+  return {error.trimmed * seconds, error.untrimmed * seconds};
+}
+
+/// Over the pixels, of those bright enough to be seen.
+double largest_ratio(const Image& image, const Image& reference) {
+  constexpr float visible = 0.01f;
+  double ratio = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    ratio = std::max(
+        ratio, double(image.pixels[i]) / std::max(double(reference.pixels[i]), double(visible)));
+  return ratio;
+}
+
+}  // namespace
+
+Tables hard_sun(Run& run) {
+  Table table{
+      "sun", "A hard sun",
+      "The peers' scene under sunrise.exr (peak 33,664), 96 × 96 pixels, 256 samples at full "
+      "effort: untrimmed relMSE × CPU seconds with next-event estimation (NEE), and by the "
+      "same code without it, which should be 50 times more; and the largest pixel of one "
+      "render over its converged value (the mean of 4 others; of at least 0.01), which "
+      "should not be above 10. Errors relative to that mean, smoothed."};
+  if (sunrise(run).empty()) {
+    table.remark =
+        "Not measured: sunrise.exr is neither in config/environments nor where --sun says.";
+    return {table};
+  }
+  const std::uint32_t samples = run.samples(256);
+  for (const char* name : {"S01", "S1", "S10", "M"}) {
+    if (!run.chosen(name)) continue;
+    const PeerMaterial& material = peer_material(name);
+    std::vector<Rendered> looking;
+    std::vector<Image> others;
+    for (int i = 0; i <= references; ++i) {
+      looking.push_back(render_once(run, material, samples, true));
+      if (i > 0) others.push_back(looking.back().image);
+    }
+    const Rendered a = render_once(run, material, samples, false),
+                   b = render_once(run, material, samples, false);
+    const Image converged = mean_of(others), reference = test::smoothed(converged);
+    const Cost found = cost(looking[0], looking[1], reference), blind = cost(a, b, reference);
+    table.add(name, trimmed, found.trimmed);
+    table.add(name, with, found.untrimmed);
+    table.add(name, without, blind.untrimmed);
+    table.add(name, gain, blind.untrimmed / found.untrimmed, at_least(50));
+    table.add(name, largest, largest_ratio(looking[0].image, converged), at_most(10));
+  }
+  return {table};
+}
+
+}  // namespace translucube::speed
