@@ -10,9 +10,11 @@
 #include <memory>
 #include <sstream>
 
+#include "renderer/environment_batch.h"
 #include "renderer/exit_batch.h"
 #include "renderer/fresnel.h"
 #include "renderer/microsurface.h"
+#include "renderer/microsurface_batch.h"
 #include "renderer/scene_data.h"
 #include "renderer/sphere_exit.h"
 #include "renderer/walk.h"
@@ -193,9 +195,7 @@ double flight_ns(double sigma_s, int walks) {
 Table one_by_one(Run& run) {
   constexpr Quantity ns{"ns", "%.1f"};
   Table table{"events", "Events one by one",
-              "What the pieces of the reference code take in a loop of their own: the best of "
-              "seven. A walk of many lanes at once is below the flight "
-              "shown here."};
+              "What the pieces take in a loop of their own: the best of seven."};
   const int calls = std::max(1000, static_cast<int>(2e5 * std::fmin(1, run.effort)));
   const auto scene = build_scene(peer_scene({1, .1, 10}, 256, 1));
   const auto& environment = std::get<ImageEnvironment>(scene->environment);
@@ -211,7 +211,7 @@ Table one_by_one(Run& run) {
     sink = scene->camera.direction(100 + u.u, 90 + u.v).x;
   });
   measure("environment look-up, at random",
-          [&] { sink = environment.radiance_from(sample_isotropic(rng)).r; });
+          [&] { sink = environment.value_from(sample_isotropic(rng)).radiance.r; });
   measure("environment sample, at random",
           [&] { sink = environment.sample(rng.uniform2()).value.pdf; });
   measure("smooth boundary event", [&] {
@@ -230,18 +230,44 @@ Table one_by_one(Run& run) {
   });
   for (const double sigma_s : {10.0, 100.0})
     table.add(text("flight or large step, σR %g", sigma_s), ns, flight_ns(sigma_s, calls / 50));
-  auto batch = std::make_unique<ExitBatch>();
-  const double connections = ns_of(
-      [&] {
-        batch->size = 0;
-        while (batch->size < ExitBatch::capacity)
-          batch->push(0.9 * sample_isotropic(rng), 0.9, sample_isotropic(rng),
-                      sample_isotropic(rng), 0.1);
-        find_exits({1.5f, 10.0f, 0.0f}, ExitBranch::near, *batch);
-        sink = batch->share[7];
-      },
-      std::max(20, calls / 256));
-  table.add("way out of a connection (SIMD)", ns, connections / ExitBatch::capacity);
+  // In SIMD, batches of `size`.
+  const auto measure_batch = [&](const char* name, std::size_t size, auto&& work) {
+    table.add(name, ns, ns_of(work, std::max(20, calls / 256)) / static_cast<double>(size));
+  };
+  auto lookups = std::make_unique<EnvironmentBatch>();
+  measure_batch("environment look-up, at random (SIMD)", EnvironmentBatch::capacity, [&] {
+    for (lookups->size = 0; lookups->size < EnvironmentBatch::capacity; ++lookups->size) {
+      const Vec3 d = sample_isotropic(rng);
+      lookups->x[lookups->size] = static_cast<float>(d.x);
+      lookups->y[lookups->size] = static_cast<float>(d.y);
+      lookups->z[lookups->size] = static_cast<float>(d.z);
+    }
+    lookups->look_up(environment);
+    sink = lookups->value[7].pdf;
+  });
+  auto microsurface = std::make_unique<MicrosurfaceBatch>();
+  const LightList lights(scene->environment, 3);
+  measure_batch("rough boundary event with 8 lights a collision (SIMD)",
+                MicrosurfaceBatch::capacity, [&] {
+                  const BatchInterface interface { 0.1f, 1.5f };
+                  for (std::size_t i = 0; i < MicrosurfaceBatch::capacity; ++i) {
+                    const Vec3 d = sample_isotropic(rng);
+                    microsurface->push({0, 0, 1}, {d.x, d.y, -std::fabs(d.z) - 1e-3},
+                                       rng.uniform2(), rng.bits());
+                  }
+                  microsurface->start(interface);
+                  while (microsurface->under_way() > 0) microsurface->collide(interface, lights, 8);
+                  sink = microsurface->inward_weight(7);
+                });
+  auto exits = std::make_unique<ExitBatch>();
+  measure_batch("way out of a smooth connection (SIMD)", ExitBatch::capacity, [&] {
+    exits->size = 0;
+    while (exits->size < ExitBatch::capacity)
+      exits->push(0.9 * sample_isotropic(rng), 0.9, sample_isotropic(rng), sample_isotropic(rng),
+                  0.1);
+    find_exits({1.5f, 10.0f, 0.0f}, ExitBranch::near, Division::balanced, *exits);
+    sink = exits->share[7];
+  });
   return table;
 }
 
