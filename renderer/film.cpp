@@ -111,16 +111,58 @@ Image variance(const Film& film) {
   return image;
 }
 
+namespace {
+
+/// Means over the 5 x 5 pixels about each, fewer at the edges; height x width x 3.
+std::vector<float> surroundings(const std::vector<float>& values, int width, int height) {
+  constexpr int reach = 2;
+  std::vector<float> rows(values.size()), means(values.size());
+  const auto along = [](const float* from, float* to, int count, std::ptrdiff_t step) {
+    for (int i = 0; i < count; ++i) {
+      const int first = std::max(0, i - reach), last = std::min(count - 1, i + reach);
+      float sum = 0;
+      for (int k = first; k <= last; ++k) sum += from[k * step];
+      to[i * step] = sum / static_cast<float>(last - first + 1);
+    }
+  };
+  const std::ptrdiff_t line = 3 * std::ptrdiff_t(width);
+  for (int y = 0; y < height; ++y)
+    for (int c = 0; c < 3; ++c) along(&values[y * line + c], &rows[y * line + c], width, 3);
+  for (int x = 0; x < line; ++x) along(&rows[x], &means[x], height, line);
+  return means;
+}
+
+/// The picture with less noise: the mean about a pixel, and of its own deviation from that as much
+/// as the noise does not explain (Lee 1980, "Digital Image Enhancement and Noise Filtering by Use
+/// of Local Statistics").
+std::vector<float> denoised(const std::vector<float>& picture, const std::vector<float>& noise,
+                            int width, int height) {
+  const std::vector<float> mean = surroundings(picture, width, height);
+  const std::vector<float> expected = surroundings(noise, width, height);
+  std::vector<float> deviation(picture.size());
+  for (std::size_t i = 0; i < picture.size(); ++i)
+    deviation[i] = (picture[i] - mean[i]) * (picture[i] - mean[i]);
+  const std::vector<float> spread = surroundings(deviation, width, height);
+  std::vector<float> result(picture.size());
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    const float own = spread[i] > 0 ? std::max(0.0f, 1 - expected[i] / spread[i]) : 0;
+    result[i] = mean[i] + own * (picture[i] - mean[i]);
+  }
+  return result;
+}
+
+}  // namespace
+
 double relative_error(const Film& film) {
   if (film.passes < 2) return std::numeric_limits<double>::quiet_NaN();
-  const double to_mean = 1.0 / film.samples;
-  const double to_variance = 1.0 / (double(film.passes - 1) * film.samples);
-  const Picture picture(film);
-  std::vector<float> error(film.m2.size() / 3, 0.0f);
-  for (std::size_t i = 0; i < film.m2.size(); ++i) {
-    const double mean = picture[i] * to_mean;
-    error[i / 3] += static_cast<float>(film.m2[i] * to_variance / (mean * mean + 0.01) / 3);
-  }
+  // A pixel that met rare bright light has too large a mean and too large a spread: relative to its
+  // own mean it would not tell.
+  const std::vector<float> noise = variance(film).pixels;
+  const std::vector<float> reference =
+      denoised(develop(film).pixels, noise, film.width, film.height);
+  std::vector<float> error(noise.size() / 3, 0.0f);
+  for (std::size_t i = 0; i < noise.size(); ++i)
+    error[i / 3] += noise[i] / (reference[i] * reference[i] + 0.01f) / 3;
   const std::size_t kept = error.size() - error.size() / 1000;
   std::ranges::nth_element(error, error.begin() + static_cast<std::ptrdiff_t>(kept - 1));
   double sum = 0;

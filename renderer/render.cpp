@@ -44,14 +44,14 @@ void store(const Tile& tile, PassFilm& film) {
 
 std::optional<Pass> plan_pass(std::uint32_t index, std::uint64_t pixels,
                               std::optional<std::uint32_t> total_samples) {
-  // A pass is a quarter of what lies before it, a power of two: enough replicates to tell the error
-  // by, few enough to merge and store, and long enough for low-discrepancy points to pay. Bounded
+  // A pass is half of what lies before it, a power of two: enough replicates to tell the error by,
+  // few enough to merge and store, and long enough for low-discrepancy points to pay. Bounded
   // by work, so that checkpoints stay close together.
   const auto largest = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
       std::bit_floor((std::uint64_t{1} << 22) / std::max<std::uint64_t>(pixels, 1)), 4, 4096));
   std::uint32_t first = 0, count = 4;
   for (std::uint32_t i = 0;; ++i) {
-    count = std::clamp(std::bit_floor(std::max(first / 4, 1u)), 4u, largest);
+    count = std::clamp(std::bit_floor(std::max(first / 2, 1u)), 4u, largest);
     if (total_samples) {
       if (first >= *total_samples) return {};
       count = std::min(count, *total_samples - first);
