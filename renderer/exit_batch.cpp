@@ -157,6 +157,8 @@ void ChooseLights(const ExitMedium& medium, const LightStrata& lights, std::size
     const V xx = hn::Sub(ux, lx), xy = hn::Sub(uy, ly), xz = hn::Sub(uz, lz);
     const V yx = hn::MulSub(ay, uz, hn::Mul(az, uy)), yy = hn::MulSub(az, ux, hn::Mul(ax, uz)),
             yz = hn::MulSub(ax, uy, hn::Mul(ay, ux));
+    const V start = hn::Mul(set(2 * 3.14159265f), load(batch.turn, lane));
+    const Turn turned{hn::Cos(D(), start), hn::Sin(D(), start)};
     // What leaves goes about as the cosine next to the surface and is the same in all directions
     // from the centre; none beyond the end of the branch.
     const V rho = hn::Sqrt(hn::Sub(one, load(batch.depth2, lane)));
@@ -172,9 +174,10 @@ void ChooseLights(const ExitMedium& medium, const LightStrata& lights, std::size
       const std::size_t at = j * stride + first;
       const V wx = hn::LoadU(D(), &lights.x[at]), wy = hn::LoadU(D(), &lights.y[at]),
               wz = hn::LoadU(D(), &lights.z[at]);
-      const V c = hn::MulAdd(set(lights.cos_turn[j]), dot(xx, xy, xz, wx, wy, wz),
-                             hn::MulAdd(set(lights.sin_turn[j]), dot(yx, yy, yz, wx, wy, wz),
-                                        dot(lx, ly, lz, wx, wy, wz)));
+      const Turn angle = turned + Turn{set(lights.cos_turn[j]), set(lights.sin_turn[j])};
+      const V c =
+          hn::MulAdd(angle.c, dot(xx, xy, xz, wx, wy, wz),
+                     hn::MulAdd(angle.s, dot(yx, yy, yz, wx, wy, wz), dot(lx, ly, lz, wx, wy, wz)));
       const V value =
           hn::Max(least, hn::IfThenElse(hn::Gt(c, end), hn::MulAdd(scale, c, offset), least));
       hn::Store(value, D(), &values[j * hn::Lanes(D())]);
@@ -195,21 +198,21 @@ void ChooseLights(const ExitMedium& medium, const LightStrata& lights, std::size
     const V wx = hn::GatherIndex(D(), lights.x.data(), index),
             wy = hn::GatherIndex(D(), lights.y.data(), index),
             wz = hn::GatherIndex(D(), lights.z.data(), index);
-    const V cos_turn = hn::GatherIndex(D(), lights.cos_turn.data(), turn),
-            sin_turn = hn::GatherIndex(D(), lights.sin_turn.data(), turn);
+    const Turn angle = turned + Turn{hn::GatherIndex(D(), lights.cos_turn.data(), turn),
+                                     hn::GatherIndex(D(), lights.sin_turn.data(), turn)};
     // The light, turned back.
-    const V along = hn::Mul(dot(ax, ay, az, wx, wy, wz), hn::Sub(one, cos_turn));
+    const V along = hn::Mul(dot(ax, ay, az, wx, wy, wz), hn::Sub(one, angle.c));
     store(hn::MulAdd(
               along, ax,
-              hn::NegMulAdd(sin_turn, hn::MulSub(ay, wz, hn::Mul(az, wy)), hn::Mul(cos_turn, wx))),
+              hn::NegMulAdd(angle.s, hn::MulSub(ay, wz, hn::Mul(az, wy)), hn::Mul(angle.c, wx))),
           batch.light_x, lane);
     store(hn::MulAdd(
               along, ay,
-              hn::NegMulAdd(sin_turn, hn::MulSub(az, wx, hn::Mul(ax, wz)), hn::Mul(cos_turn, wy))),
+              hn::NegMulAdd(angle.s, hn::MulSub(az, wx, hn::Mul(ax, wz)), hn::Mul(angle.c, wy))),
           batch.light_y, lane);
     store(hn::MulAdd(
               along, az,
-              hn::NegMulAdd(sin_turn, hn::MulSub(ax, wy, hn::Mul(ay, wx)), hn::Mul(cos_turn, wz))),
+              hn::NegMulAdd(angle.s, hn::MulSub(ax, wy, hn::Mul(ay, wx)), hn::Mul(angle.c, wz))),
           batch.light_z, lane);
     hn::StoreU(hn::Add(hn::Mul(turn, hn::Set(di, std::int32_t(positions))), place), di,
                &batch.light[lane]);

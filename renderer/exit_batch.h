@@ -45,7 +45,7 @@ struct ExitBatch {
       light_pdf{};
   // In, for choose_lights() and draw_exits(): the axis about which the walk may be turned (unit),
   // numbers uniform in [0, 1]. Out: which light was chosen.
-  Floats axis_x{}, axis_y{}, axis_z{}, choice{}, drawn{};
+  Floats axis_x{}, axis_y{}, axis_z{}, choice{}, turn{}, drawn{};
   std::array<std::int32_t, capacity> light{};
   // Out: share of the vertex's light that leaves towards the light, over the light's density (0:
   // there is no way; negative: not found, sphere_exit.h finds it); length inside; where it leaves
@@ -85,8 +85,8 @@ double share(const Medium& medium, double ior, const SphereExit& exit, Vec3 befo
 
 /// Chooses a light of the list for each vertex and sets its direction: one out of `candidates`, in
 /// proportion to about what leaves towards it on the near branch (resampled importance sampling:
-/// Talbot, Cline, Egbert 2005). Each candidate is turned about the vertex's axis by another angle.
-/// Multiplies light_pdf by the density of the choice.
+/// Talbot, Cline, Egbert 2005). Each candidate is turned about the vertex's axis by another angle,
+/// from a start drawn by `turn`. Multiplies light_pdf by the density of the choice.
 void choose_lights(const ExitMedium& medium, const LightStrata& lights, std::size_t position,
                    ExitBatch& batch);
 

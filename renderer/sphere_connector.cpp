@@ -72,6 +72,7 @@ void SphereConnector::connect(Path& path) {
     batch.axis_z[i] = static_cast<float>(axis.z);
     batch.choice[i] = static_cast<float>(u.u);
     batch.drawn[i] = static_cast<float>(u.v);
+    batch.turn[i] = static_cast<float>(rng.uniform());
     near_.waiting[i] = vertex;
     near_.waiting[i].weight = static_cast<float>(path.weight / chance);
     batch.push(path.p, rho, path.d, {}, 1);

@@ -145,6 +145,7 @@ void fill(ExitBatch& batch, double rho, Rng& rng) {
     batch.axis_z[i] = static_cast<float>(axis.z);
     batch.choice[i] = static_cast<float>(rng.uniform());
     batch.drawn[i] = static_cast<float>(rng.uniform());
+    batch.turn[i] = static_cast<float>(rng.uniform());
     batch.push(p, rho, random_direction(rng), {}, 1);
   }
 }
@@ -223,15 +224,15 @@ TEST(SphereExits, AChosenLightIsOneOfTheListTurnedAboutTheAxis) {
     lights->set(i, directions[i]);
   }
   fill(*batch, 0.9, rng);
-  choose_lights({1.5f, 1, 0}, *lights, 100, *batch);
+  choose_lights({1.5f, 1, 0}, *lights, 60, *batch);
   for (std::size_t i = 0; i < batch->size; ++i) {
     const Vec3 axis{batch->axis_x[i], batch->axis_y[i], batch->axis_z[i]};
     const Vec3 light{batch->light_x[i], batch->light_y[i], batch->light_z[i]};
     const Vec3 original = directions[batch->light[i]];
     EXPECT_NEAR(length(light), 1, 1e-5);
     EXPECT_NEAR(dot(light, axis), dot(original, axis), 1e-5);
-    const double turn = 2 * std::numbers::pi / LightStrata::candidates *
-                        double(std::size_t(batch->light[i]) / LightStrata::positions);
+    const double stratum = double(std::size_t(batch->light[i]) / LightStrata::positions);
+    const double turn = 2 * std::numbers::pi * (batch->turn[i] + stratum / LightStrata::candidates);
     const Vec3 across = original - dot(original, axis) * axis;
     EXPECT_NEAR(dot(light, across), std::cos(turn) * length_squared(across), 1e-5);
   }
