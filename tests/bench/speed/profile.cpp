@@ -43,9 +43,12 @@ struct Part {
 };
 const std::vector<Part>& parts() {
   static const std::vector<Part> all{
-      {"environment", {"ImageEnvironment"}},
-      {"connections", {"SphereConnector", "FindExits", "ExitBatch", "SphereExit"}},
-      {"microfacets", {"Micro", "microsurface", "Ggx"}},
+      {"program start", {"_dl_", "do_lookup", "strcmp"}},
+      {"environment", {"ImageEnvironment", "EnvironmentBatch", "Coordinates", "LightList"}},
+      {"connections",
+       {"SphereConnector", "FindExits", "ExitBatch", "SphereExit", "ChooseLights", "DrawExits",
+        "Connect", "Densities"}},
+      {"microfacets", {"Micro", "microsurface", "Ggx", "Collide", "::Start"}},
       {"walk", {"large_step", "cross_ball", "Walk", "Medium", "Sphere::"}},
       {"collect", {"Collector", "merge", "Lane"}},
       {"stages (inlined)", {"trace_body", "Tracer", "trace_pass", "trace_tile"}},
