@@ -66,8 +66,8 @@ Image develop(const Film& film, int lane);
 Image variance(const Film& film);
 
 /// Estimate of sqrt(relMSE), relMSE = mean (x - ref)^2 / (ref^2 + 0.01) over channels and pixels,
-/// the 0.1 % largest pixels set aside. NaN before the second pass; ref is told from the picture and its
-/// surroundings.
+/// the 0.1 % largest pixels set aside. NaN before the second pass; ref is told from the picture and
+/// its surroundings.
 double relative_error(const Film& film);
 
 /// Binary form for checkpoints: header, counters, floats, checksum; same machine only.
