@@ -1,8 +1,10 @@
 #include "renderer/environment_cache.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -28,7 +30,9 @@ class EnvironmentCacheTest : public testing::Test {
     return folder_ / name;
   }
 
-  const fs::path folder_ = fs::temp_directory_path() / "translucube_environment_cache_test";
+  // Its own: other tests of this file may run at the same time.
+  const fs::path folder_ =
+      fs::temp_directory_path() / ("translucube-environments-" + std::to_string(getpid()));
   EnvironmentCache cache_;
 };
 
