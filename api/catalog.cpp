@@ -91,6 +91,10 @@ Limits read_limits(const json& value, const std::string& pointer, Faults& faults
     limits.samples = static_cast<std::uint32_t>(*samples);
   if (const auto seconds = object.number("seconds", {0, 1e9, true, false}))
     limits.seconds = *seconds;
+  if (const auto samples = object.number("camera_samples", {1, 1e18}))
+    limits.camera_samples = *samples;
+  if (const auto points = object.integer("points", 1, 1'000'000))
+    limits.points = static_cast<std::uint32_t>(*points);
   object.refuse_unknown_keys();
   return limits;
 }
@@ -108,6 +112,14 @@ ServerConfig read_server(const json& value, const std::string& pointer, ServerCo
   small("workers", 1, 1024, server.workers);
   small("threads_per_worker", 0, 1024, server.threads_per_worker);
   small("http_threads", 1, 1024, server.http_threads);
+  small("event_streams", 1, 100'000, server.event_streams);
+  small("waiting_requests", 1, 100'000, server.waiting_requests);
+  if (const auto bytes = object.integer("artifact_bytes", 1 << 20, std::uint64_t{1} << 60))
+    server.artifact_bytes = *bytes;
+  if (const auto length = object.integer("queue_length", 1, 10'000'000))
+    server.queue_length = *length;
+  if (const auto seconds = object.number("interactive_seconds", {0, 1e9}))
+    server.interactive_seconds = *seconds;
   object.refuse_unknown_keys();
   return server;
 }

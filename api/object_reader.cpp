@@ -1,27 +1,19 @@
 #include "api/object_reader.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace translucube::api {
-namespace {
 
 using nlohmann::json;
 
-std::string short_text(double value) {
+std::string number_text(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  for (int precision = 1; precision < 17; ++precision) {
-    char shorter[32];
-    std::snprintf(shorter, sizeof shorter, "%.*g", precision, value);
-    if (std::strtod(shorter, nullptr) == value) return shorter;
-  }
-  return text;
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, end};
 }
-
-}  // namespace
 
 bool Range::contains(double value) const {
   return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
@@ -31,10 +23,10 @@ std::string Range::text() const {
   constexpr double largest = std::numeric_limits<double>::max();
   const bool has_low = low > -largest, has_high = high < largest;
   if (has_low && has_high)
-    return std::string("in ") + (low_open ? "(" : "[") + short_text(low) + ", " + short_text(high) +
-           (high_open ? ")" : "]");
-  if (has_low) return (low_open ? "> " : ">= ") + short_text(low);
-  if (has_high) return (high_open ? "< " : "<= ") + short_text(high);
+    return std::string("in ") + (low_open ? "(" : "[") + number_text(low) + ", " +
+           number_text(high) + (high_open ? ")" : "]");
+  if (has_low) return (low_open ? "> " : ">= ") + number_text(low);
+  if (has_high) return (high_open ? "< " : "<= ") + number_text(high);
   return "";
 }
 

@@ -48,35 +48,46 @@ void read_quality(const json& value, const std::string& pointer, const Limits& l
 /// the pixels.
 constexpr std::uint64_t explorable_share = 16;
 
-void check_explorable(const RenderRequest& request, const Limits& limits, Faults& faults) {
+void check_explorable(const RenderRequest& request, const std::string& pointer,
+                      const Limits& limits, Faults& faults) {
   if (!request.explorable) return;
   if (request.material.pigment_absorption_per_scattering)
-    faults.add("/explorable", "the absorption of a pigment is bound to its scattering");
+    faults.add(pointer + "/explorable", "the absorption of a pigment is bound to its scattering");
   const std::uint64_t most = std::max<std::uint64_t>(1, limits.pixels / explorable_share);
   if (std::uint64_t(request.width) * std::uint64_t(request.height) > most)
-    faults.add("/image", "width x height must be at most " + std::to_string(most) +
-                             " where explorable is true");
+    faults.add(pointer + "/image", "width x height must be at most " + std::to_string(most) +
+                                       " where explorable is true");
 }
 
 /// Similarity replaces anisotropic scattering by isotropic scattering of sigma_s (1 - g). Beyond
 /// this the two differ in what the dipole is asked for: where light comes out near its entry.
 constexpr double largest_anisotropy_of_dipole = 0.9;
 
+/// Camera samples of the whole image.
+void check_work(const RenderRequest& request, const std::string& pointer, const Limits& limits,
+                Faults& faults) {
+  const auto* target = std::get_if<SampleTarget>(&request.quality);
+  const double pixels = double(request.width) * request.height;
+  if (target && pixels * target->samples > limits.camera_samples)
+    faults.add(pointer + "/quality/samples",
+               "width x height x samples must be at most " + number_text(limits.camera_samples));
+}
+
 /// What is legal but has no answer in the model that was asked for.
-void refuse_what_the_model_cannot_serve(const json& value, const RenderRequest& request,
-                                        Faults& faults) {
+void refuse_what_the_model_cannot_serve(const json& value, const std::string& pointer,
+                                        const RenderRequest& request, Faults& faults) {
   if (request.model != Model::dipole) return;
   if (request.explorable)
-    faults.add("/explorable",
+    faults.add(pointer + "/explorable",
                "the dipole model has no path lengths to keep; ask for the transport model");
   const auto* cube = std::get_if<CubePoint>(&request.material.point);
   if (request.material.pigment_absorption_per_scattering && cube && cube->scattering == 1)
-    faults.add("/material/cube/scattering",
+    faults.add(pointer + "/material/cube/scattering",
                "the dipole model needs finite coefficients of a pigment; ask for less than 1, or "
                "for the transport model");
   if (std::fabs(request.material.anisotropy) > largest_anisotropy_of_dipole) {
     const bool in_coefficients = value.contains("/material/coefficients/g"_json_pointer);
-    faults.add(in_coefficients ? "/material/coefficients/g" : "/material/anisotropy",
+    faults.add(pointer + (in_coefficients ? "/material/coefficients/g" : "/material/anisotropy"),
                "the dipole model knows anisotropy by similarity only, which holds up to 0.9 in "
                "size; ask for the transport model");
   }
@@ -110,15 +121,21 @@ void read_request(const json& value, const std::string& pointer, const Catalog& 
   request.refuse_unknown_keys();
 }
 
+void read_whole_request(const json& value, const std::string& pointer, const Catalog& catalog,
+                        RenderRequest& out, Faults& faults) {
+  read_request(value, pointer, catalog, MaterialPoint::required, out, faults);
+  check_explorable(out, pointer, catalog.limits, faults);
+  check_work(out, pointer, catalog.limits, faults);
+  refuse_what_the_model_cannot_serve(value, pointer, out, faults);
+}
+
 std::variant<RenderRequest, Problem> parse_render_request(std::string_view text,
                                                           const Catalog& catalog) {
   auto read = read_json(text, catalog.limits.body_bytes);
   if (auto* problem = std::get_if<Problem>(&read)) return std::move(*problem);
   auto& [value, faults] = std::get<JsonDocument>(read);
   RenderRequest request = catalog.defaults;
-  read_request(value, "", catalog, MaterialPoint::required, request, faults);
-  check_explorable(request, catalog.limits, faults);
-  refuse_what_the_model_cannot_serve(value, request, faults);
+  read_whole_request(value, "", catalog, request, faults);
   if (!faults.empty()) return invalid_request(faults);
   return request;
 }

@@ -32,6 +32,7 @@ const ProblemKind& kind(ProblemCode code) {
       "The idempotency key was used with another request"};
   static constexpr ProblemKind not_found{"urn:translucube:problem:not-found", 404,
                                          "There is no such thing here"};
+  static constexpr ProblemKind gone{"urn:translucube:problem:gone", 410, "It is no longer here"};
   static constexpr ProblemKind method_not_allowed{"urn:translucube:problem:method-not-allowed", 405,
                                                   "The method is not allowed here"};
   static constexpr ProblemKind not_acceptable{"urn:translucube:problem:not-acceptable", 406,
@@ -48,6 +49,8 @@ const ProblemKind& kind(ProblemCode code) {
       "urn:translucube:problem:unsupported-media-type", 415, "The body must be application/json"};
   static constexpr ProblemKind range_not_satisfiable{
       "urn:translucube:problem:range-not-satisfiable", 416, "The range is not in the file"};
+  static constexpr ProblemKind queue_full{"urn:translucube:problem:queue-full", 429,
+                                          "The queue is full"};
   static constexpr ProblemKind overloaded{"urn:translucube:problem:overloaded", 503,
                                           "The service is busy"};
   static constexpr ProblemKind storage_failure{"urn:translucube:problem:storage-failure", 507,
@@ -65,6 +68,8 @@ const ProblemKind& kind(ProblemCode code) {
       return idempotency_mismatch;
     case ProblemCode::not_found:
       return not_found;
+    case ProblemCode::gone:
+      return gone;
     case ProblemCode::method_not_allowed:
       return method_not_allowed;
     case ProblemCode::not_acceptable:
@@ -81,6 +86,8 @@ const ProblemKind& kind(ProblemCode code) {
       return unsupported_media_type;
     case ProblemCode::range_not_satisfiable:
       return range_not_satisfiable;
+    case ProblemCode::queue_full:
+      return queue_full;
     case ProblemCode::overloaded:
       return overloaded;
     case ProblemCode::storage_failure:

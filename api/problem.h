@@ -20,6 +20,7 @@ enum class ProblemCode {
   invalid_request,         // 422
   idempotency_mismatch,    // 422
   not_found,               // 404
+  gone,                    // 410: removed to make room
   method_not_allowed,      // 405
   not_acceptable,          // 406
   conflict,                // 409: the state does not allow it (image of a failed render, ...)
@@ -28,6 +29,7 @@ enum class ProblemCode {
   uri_too_long,            // 414
   unsupported_media_type,  // 415
   range_not_satisfiable,   // 416
+  queue_full,              // 429
   overloaded,              // 503
   storage_failure,         // 507: full disk, store not writable
   internal,                // 500

@@ -77,21 +77,6 @@ std::optional<AbsorberRequest> read_absorber_object(const json& value, const std
   return absorber;
 }
 
-void read_absorber(const json& value, const std::string& pointer, const Catalog& catalog,
-                   AbsorberRequest& out, Faults& faults) {
-  if (value.is_object()) {
-    if (auto absorber = read_absorber_object(value, pointer, faults)) out = std::move(*absorber);
-  } else if (!value.is_string()) {
-    faults.add(pointer, "must be the name of an absorber, or an object");
-  } else if (!catalog.absorbers.contains(value.get<std::string>())) {
-    std::vector<std::string> names;
-    for (const auto& [name, absorber] : catalog.absorbers) names.push_back(name);
-    faults.add(pointer, "there is no absorber of this name; there are: " + name_list(names));
-  } else {
-    out = value.get<std::string>();
-  }
-}
-
 void read_pigment(const json& value, const std::string& pointer, std::optional<double>& out,
                   Faults& faults) {
   if (value.is_boolean() && !value.get<bool>()) {
@@ -108,6 +93,21 @@ void read_pigment(const json& value, const std::string& pointer, std::optional<d
 }
 
 }  // namespace
+
+void read_absorber(const json& value, const std::string& pointer, const Catalog& catalog,
+                   AbsorberRequest& out, Faults& faults) {
+  if (value.is_object()) {
+    if (auto absorber = read_absorber_object(value, pointer, faults)) out = std::move(*absorber);
+  } else if (!value.is_string()) {
+    faults.add(pointer, "must be the name of an absorber, or an object");
+  } else if (!catalog.absorbers.contains(value.get<std::string>())) {
+    std::vector<std::string> names;
+    for (const auto& [name, absorber] : catalog.absorbers) names.push_back(name);
+    faults.add(pointer, "there is no absorber of this name; there are: " + name_list(names));
+  } else {
+    out = value.get<std::string>();
+  }
+}
 
 std::optional<SpectralAbsorber> read_spectrum(ObjectReader& object) {
   const auto wavelengths =

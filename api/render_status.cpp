@@ -1,56 +1,31 @@
 #include "api/render_status.h"
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
+#include "api/status_json.h"
 
 namespace translucube::api {
 namespace {
 
 using nlohmann::json;
 
-json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-template <typename T>
-json value_or_null(const std::optional<T>& value) {
-  return value ? json(*value) : json(nullptr);
-}
-
-json parsed(const std::string& text, const char* what) {
-  json value = json::parse(text, nullptr, false);
-  if (value.is_discarded()) throw std::invalid_argument(std::string("not JSON: ") + what);
-  return value;
-}
-
-json parsed_or_null(const std::optional<std::string>& text, const char* what) {
-  return text ? parsed(*text, what) : json(nullptr);
-}
-
 json status_object(const RenderStatus& status) {
   const std::string self = "/v1/renders/" + status.id;
-  const Progress& progress = status.progress;
   return {
       {"id", status.id},
       {"state", name(status.state)},
       {"created_at", status.created_at},
       {"started_at", value_or_null(status.started_at)},
       {"finished_at", value_or_null(status.finished_at)},
-      {"progress",
-       {{"samples", progress.samples},
-        {"total_samples", value_or_null(progress.total_samples)},
-        // Zero is what a Progress holds before it was ever computed; no estimate is ever exactly 0
-        // but that of a picture without noise, which has passes.
-        {"relative_error", progress.passes == 0 && progress.relative_error == 0
-                               ? json(nullptr)
-                               : finite_or_null(progress.relative_error)},
-        {"seconds", finite_or_null(progress.seconds)},
-        {"eta_seconds",
-         progress.eta_seconds ? finite_or_null(*progress.eta_seconds) : json(nullptr)}}},
+      {"progress", progress_object(status.progress)},
       {"request", parsed(status.request, "the request of a render")},
       {"material", parsed(status.material, "the material report of a render")},
       {"stats", parsed_or_null(status.stats, "the stats of a render")},
       {"error", parsed_or_null(status.error, "the error of a render")},
-      {"links", {{"self", self}, {"image", self + "/image"}, {"cancel", self + "/cancel"}}},
+      {"cached", status.cached},
+      {"links",
+       {{"self", self},
+        {"image", self + "/image"},
+        {"events", self + "/events"},
+        {"cancel", self + "/cancel"}}},
   };
 }
 

@@ -24,6 +24,7 @@ struct RenderStatus {
   std::string material;              ///< JSON text of material_report
   std::optional<std::string> stats;  ///< JSON text of stats_json
   std::optional<std::string> error;  ///< JSON text of to_json(Problem)
+  bool cached = false;               ///< the same picture was there: nothing was traced for it
 };
 
 /// The answer to GET /v1/renders/{id}; links are built from the id. Throws std::invalid_argument if

@@ -19,10 +19,17 @@ enum class MaterialPoint { required, refused };
 /// Each reads a JSON value over the defaults that `out` holds; what is missing or wrong stays.
 void read_request(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
                   MaterialPoint point, RenderRequest& out, Faults& faults);
+/// The same, with all that must hold between the parts.
+void read_whole_request(const nlohmann::json& value, const std::string& pointer,
+                        const Catalog& catalog, RenderRequest& out, Faults& faults);
 void read_material(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
                    MaterialPoint point, MaterialRequest& out, Faults& faults);
 void read_scene(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
                 RenderRequest& out, Faults& faults);
+
+/// The name of an absorber, or the absorber itself.
+void read_absorber(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
+                   AbsorberRequest& out, Faults& faults);
 
 /// {"wavelengths_nm": [...], "values": [...]}; both keys are required.
 std::optional<SpectralAbsorber> read_spectrum(ObjectReader& object);

@@ -96,6 +96,16 @@ std::vector<std::string> ArtifactStore::ids() const {
   return ids;
 }
 
+std::uint64_t ArtifactStore::bytes(const std::string& id) const {
+  std::uint64_t sum = 0;
+  for (const fs::path& file : entries(root_ / id)) {
+    std::error_code gone;
+    const std::uint64_t size = fs::file_size(file, gone);
+    if (!gone) sum += size;
+  }
+  return sum;
+}
+
 void ArtifactStore::check_writable() {
   const fs::path probe = root_ / "probe";
   write_atomically(probe, "writable");

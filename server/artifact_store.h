@@ -14,10 +14,11 @@
 
 namespace translucube::server {
 
-/// The files of the renders, <root>/<id>/<name>: partial films ("pass-3.film"), merged films
-/// ("film-4.bin": the passes 0 to 3), results ("image.exr") and pictures derived from these. A name
-/// holds the whole of its file or does not exist (write_atomically). Safe to share by threads.
-/// Every function throws FileError where the disk refuses.
+/// Files in folders, <root>/<id>/<name>. A job's folder has its partial films ("pass-3.film") and
+/// merged films ("film-4.bin": the passes 0 to 3); a result's, named by its content, the picture
+/// and what is derived from it; a sweep's, its contact sheets. A name holds the whole of its file
+/// or does not exist (write_atomically). Safe to share by threads. Every function throws FileError
+/// where the disk refuses.
 class ArtifactStore {
  public:
   /// Creates the folder; removes what a crash left half-written.
@@ -33,6 +34,7 @@ class ArtifactStore {
   void remove(const std::string& id, const std::string& name);
   void remove_all(const std::string& id);
   std::vector<std::string> ids() const;
+  std::uint64_t bytes(const std::string& id) const;  ///< of all files in the folder
   void check_writable();
 
   // Films.

@@ -60,10 +60,13 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   const api::Catalog catalog = configured(options);
   const ColorConfig colors(catalog.display_config);
   const DataFolder folder(catalog.server.data_folder);
-  JobStore store(folder.store_file());
+  StoreOptions queue;
+  queue.most_queued = catalog.server.queue_length;
+  queue.interactive_seconds = catalog.server.interactive_seconds;
+  JobStore store(folder.store_file(), queue);
   ArtifactStore artifacts(folder.artifacts());
   JobService service(catalog, colors, store, artifacts);
-  Endpoints endpoints{service, catalog, colors, std::max(1, catalog.server.http_threads / 2)};
+  Endpoints endpoints{service, catalog, colors};
   HttpServer server(endpoints, {catalog.server.host, catalog.server.port,
                                 catalog.server.http_threads, catalog.limits.body_bytes});
 

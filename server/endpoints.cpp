@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <chrono>
-#include <span>
 
 #include "api/listings.h"
 #include "api/openapi.h"
-#include "server/http_negotiation.h"
-#include "server/image_endpoint.h"
+#include "server/handlers.h"
+#include "server/ids.h"
 
 namespace translucube::server {
 namespace {
@@ -17,163 +14,57 @@ namespace {
 using api::Problem;
 using api::ProblemCode;
 
-constexpr int longest_wait_s = 60;
-constexpr int default_page = 50, longest_page = 200;
-
-HttpResponse json_response(int status, std::string body) {
-  return {status, {}, "application/json", std::move(body)};
-}
-
-/// A JSON answer that a client can ask for again at the price of a header.
-HttpResponse tagged_json(const HttpRequest& request, std::string body) {
-  const std::string etag = '"' + content_hash(body) + '"';
-  HttpResponse response = json_response(200, std::move(body));
-  if (etag_matches(request.header("if-none-match"), etag)) response = {304, {}, {}, {}};
-  response.headers = {{"ETag", etag}, {"Cache-Control", "no-cache"}};
-  return response;
-}
-
-/// Waits on behalf of a client, if there is a place to wait.
-class WaitingPlace {
- public:
-  explicit WaitingPlace(Endpoints& endpoints)
-      : waiting_(endpoints.waiting), taken_(++waiting_ <= endpoints.max_waiting) {}
-  ~WaitingPlace() { --waiting_; }
-  WaitingPlace(const WaitingPlace&) = delete;
-  WaitingPlace& operator=(const WaitingPlace&) = delete;
-  bool taken() const { return taken_; }
-
- private:
-  std::atomic<int>& waiting_;
-  bool taken_;
-};
-
-HttpResponse post_render(Endpoints& endpoints, const HttpRequest& request, const std::string&) {
-  const std::string_view type = request.header("content-type");
-  if (!type.empty() && !is_json(type))
-    return problem_response({ProblemCode::unsupported_media_type,
-                             "The body must be sent as Content-Type: application/json.",
-                             {}});
-  std::optional<std::string> key;
-  if (const auto it = request.headers.find("idempotency-key"); it != request.headers.end()) {
-    key = it->second;
-    if (!is_idempotency_key(*key))
-      return problem_response({ProblemCode::invalid_request,
-                               "The Idempotency-Key must be 1 to 255 visible ASCII characters.",
-                               {}});
-  }
-
-  auto submitted = endpoints.service.submit(request.body, key);
-  if (const auto* problem = std::get_if<Problem>(&submitted)) return problem_response(*problem);
-  auto& [status, created] = std::get<Submission>(submitted);
-
-  std::string applied;
-  if (const std::optional<int> asked = preferred_wait(request.header("prefer"))) {
-    const int seconds = std::min(*asked, longest_wait_s);
-    const WaitingPlace place(endpoints);
-    if (place.taken()) {
-      auto waited = endpoints.service.wait(status.id, std::chrono::seconds(seconds));
-      if (const auto* problem = std::get_if<Problem>(&waited)) return problem_response(*problem);
-      status = std::get<api::RenderStatus>(std::move(waited));
-      applied = "wait=" + std::to_string(seconds);
-    }
-  }
-  HttpResponse response = json_response(api::is_end(status.state) ? 200 : 202, to_json(status));
-  response.headers = {{"Location", "/v1/renders/" + status.id}};
-  if (!applied.empty()) response.headers.emplace_back("Preference-Applied", applied);
-  if (!created) response.headers.emplace_back("Idempotency-Replayed", "true");
-  return response;
-}
-
-HttpResponse list_renders(Endpoints& endpoints, const HttpRequest& request, const std::string&) {
-  ListQuery query{std::nullopt, std::nullopt, default_page};
-  Problem problem{ProblemCode::invalid_request, "A query parameter is not valid.", {}};
-  for (const auto& [name, value] : request.query) {
-    if (name == "cursor") query.cursor = value;
-    if (name == "status") {
-      query.state = api::job_state(value);
-      if (!query.state)
-        problem.faults.push_back(
-            {"?status", "must be one of queued, running, succeeded, failed, canceled"});
-    }
-    if (name == "limit") {
-      const char* end = value.data() + value.size();
-      const auto [at, error] = std::from_chars(value.data(), end, query.limit);
-      if (error != std::errc() || at != end || query.limit < 1 || query.limit > longest_page)
-        problem.faults.push_back({"?limit", "must be an integer from 1 to 200"});
-    }
-  }
-  if (!problem.faults.empty()) return problem_response(problem);
-  const auto page = endpoints.service.list(query);
-  if (const auto* failed = std::get_if<Problem>(&page)) return problem_response(*failed);
-  const auto& [renders, next_cursor] = std::get<RenderPage>(page);
-  return tagged_json(request, api::render_list_json(renders, next_cursor));
-}
-
-HttpResponse get_render(Endpoints& endpoints, const HttpRequest& request, const std::string& id) {
-  const auto status = endpoints.service.get(id);
-  if (const auto* problem = std::get_if<Problem>(&status)) return problem_response(*problem);
-  return tagged_json(request, to_json(std::get<api::RenderStatus>(status)));
-}
-
-HttpResponse cancel_render(Endpoints& endpoints, const HttpRequest&, const std::string& id) {
-  const auto status = endpoints.service.cancel(id);
-  if (const auto* problem = std::get_if<Problem>(&status)) return problem_response(*problem);
-  return json_response(200, to_json(std::get<api::RenderStatus>(status)));
-}
-
-HttpResponse delete_render(Endpoints& endpoints, const HttpRequest&, const std::string& id) {
-  if (const auto problem = endpoints.service.remove(id)) return problem_response(*problem);
-  return {204, {}, {}, {}};
-}
-
-HttpResponse get_image(Endpoints& endpoints, const HttpRequest& request, const std::string& id) {
-  return image_response(endpoints.service, request, id);
-}
-
-HttpResponse get_absorbers(Endpoints& endpoints, const HttpRequest& request, const std::string&) {
+HttpResponse get_absorbers(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
   return tagged_json(request, api::absorbers_json(endpoints.catalog));
 }
 
-HttpResponse get_environments(Endpoints& endpoints, const HttpRequest& request,
-                              const std::string&) {
+HttpResponse get_environments(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
   return tagged_json(request, api::environments_json(endpoints.catalog));
 }
 
-HttpResponse get_displays(Endpoints& endpoints, const HttpRequest& request, const std::string&) {
+HttpResponse get_displays(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
   return tagged_json(request, api::displays_json(endpoints.colors.displays()));
 }
 
-HttpResponse get_openapi(Endpoints&, const HttpRequest& request, const std::string&) {
+HttpResponse get_openapi(Endpoints&, const HttpRequest& request, const PathIds&) {
   return tagged_json(request, std::string(api::openapi_document()));
 }
 
-HttpResponse livez(Endpoints&, const HttpRequest&, const std::string&) {
+HttpResponse livez(Endpoints&, const HttpRequest&, const PathIds&) {
   return json_response(200, R"({"status":"alive"})");
 }
 
-HttpResponse readyz(Endpoints& endpoints, const HttpRequest&, const std::string&) {
+HttpResponse readyz(Endpoints& endpoints, const HttpRequest&, const PathIds&) {
   if (const auto reason = endpoints.service.unready_reason())
     return problem_response({ProblemCode::overloaded, *reason, {}});
   return json_response(200, R"({"status":"ready"})");
 }
 
 struct Route {
-  std::string_view method, pattern;  ///< "{id}" stands for one segment
-  HttpResponse (*handle)(Endpoints&, const HttpRequest&, const std::string& id);
+  std::string_view method, pattern;  ///< "{id}" and "{point}" stand for one segment each
+  HttpResponse (*handle)(Endpoints&, const HttpRequest&, const PathIds&);
   std::array<std::string_view, 6> query{};  ///< the parameters it knows
 };
 
+constexpr std::array<std::string_view, 6> list_parameters{"cursor", "limit", "status"};
+constexpr std::array<std::string_view, 6> image_parameters{"format",     "display",    "view",
+                                                           "colorspace", "absorption", "absorber"};
+
 constexpr std::array routes{
     Route{"POST", "/v1/renders", post_render},
-    Route{"GET", "/v1/renders", list_renders, {"cursor", "limit", "status"}},
-    Route{"GET", "/v1/renders/{id}", get_render},
+    Route{"GET", "/v1/renders", list_renders, list_parameters},
+    Route{"GET", "/v1/renders/{id}", get_render, {"wait"}},
     Route{"DELETE", "/v1/renders/{id}", delete_render},
-    Route{"GET",
-          "/v1/renders/{id}/image",
-          get_image,
-          {"format", "display", "view", "colorspace", "absorption", "absorber"}},
+    Route{"GET", "/v1/renders/{id}/image", get_image, image_parameters},
+    Route{"GET", "/v1/renders/{id}/events", get_render_events},
     Route{"POST", "/v1/renders/{id}/cancel", cancel_render},
+    Route{"POST", "/v1/sweeps", post_sweep, {"dry_run"}},
+    Route{"GET", "/v1/sweeps", list_sweeps, list_parameters},
+    Route{"GET", "/v1/sweeps/{id}", get_sweep, {"wait"}},
+    Route{"DELETE", "/v1/sweeps/{id}", delete_sweep},
+    Route{"GET", "/v1/sweeps/{id}/points/{point}/image", get_point_image, image_parameters},
+    Route{"GET", "/v1/sweeps/{id}/events", get_sweep_events},
+    Route{"POST", "/v1/sweeps/{id}/cancel", cancel_sweep},
     Route{"GET", "/v1/absorbers", get_absorbers},
     Route{"GET", "/v1/environments", get_environments},
     Route{"GET", "/v1/displays", get_displays},
@@ -182,18 +73,29 @@ constexpr std::array routes{
     Route{"GET", "/openapi.json", get_openapi},
 };
 
-/// The segment in the place of "{id}" ("" where there is none), or nothing if it is another path.
-std::optional<std::string> match(std::string_view pattern, std::string_view path) {
-  const std::size_t brace = pattern.find("{id}");
-  if (brace == pattern.npos) return pattern == path ? std::optional("") : std::nullopt;
-  const std::string_view before = pattern.substr(0, brace), after = pattern.substr(brace + 4);
-  if (path.size() <= before.size() + after.size() || !path.starts_with(before) ||
-      !path.ends_with(after))
-    return std::nullopt;
-  const std::string_view id =
-      path.substr(before.size(), path.size() - before.size() - after.size());
-  if (id.find('/') != id.npos) return std::nullopt;
-  return std::string(id);
+/// The first segment of a path without its leading slash, which is taken off it.
+std::string_view take_segment(std::string_view& path) {
+  const std::string_view segment = path.substr(0, path.find('/'));
+  path.remove_prefix(std::min(path.size(), segment.size() + 1));
+  return segment;
+}
+
+/// What stands in the places of the pattern, or nothing if it is another path.
+std::optional<PathIds> match(std::string_view pattern, std::string_view path) {
+  PathIds ids;
+  if (std::ranges::count(pattern, '/') != std::ranges::count(path, '/')) return std::nullopt;
+  if (!path.starts_with('/')) return std::nullopt;
+  pattern.remove_prefix(1);
+  path.remove_prefix(1);
+  while (!pattern.empty() || !path.empty()) {
+    const std::string_view expected = take_segment(pattern), given = take_segment(path);
+    std::string* id = expected == "{id}" ? &ids.id : expected == "{point}" ? &ids.point : nullptr;
+    if (id != nullptr && !given.empty())
+      *id = given;
+    else if (expected != given)
+      return std::nullopt;
+  }
+  return ids;
 }
 
 std::vector<api::Fault> query_faults(const Route& route, const HttpRequest& request) {
@@ -215,8 +117,8 @@ HttpResponse respond(Endpoints& endpoints, const HttpRequest& request) {
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
   std::string allowed;
   for (const Route& route : routes) {
-    const std::optional<std::string> id = match(route.pattern, request.path);
-    if (!id) continue;
+    const std::optional<PathIds> ids = match(route.pattern, request.path);
+    if (!ids) continue;
     if (route.method != method) {
       allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
       if (route.method == "GET") allowed += ", HEAD";
@@ -226,9 +128,9 @@ HttpResponse respond(Endpoints& endpoints, const HttpRequest& request) {
     if (!faults.empty())
       return problem_response(
           {ProblemCode::invalid_request, "A query parameter is not valid.", faults});
-    if (!id->empty() && !is_id(*id))
-      return problem_response({ProblemCode::not_found, "There is no render of this id.", {}});
-    return route.handle(endpoints, request, *id);
+    if (!ids->id.empty() && !is_id(ids->id))
+      return problem_response({ProblemCode::not_found, "There is nothing of this id.", {}});
+    return route.handle(endpoints, request, *ids);
   }
   if (allowed.empty())
     return problem_response({ProblemCode::not_found, "There is nothing at this path.", {}});

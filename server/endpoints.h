@@ -17,10 +17,9 @@ struct Endpoints {
   JobService& service;
   const api::Catalog& catalog;
   const ColorConfig& colors;
-  /// Each request that waits holds a thread: past this many, `Prefer: wait` is not honoured, so
-  /// that probes and statuses keep answering.
-  int max_waiting = 4;
-  std::atomic<int> waiting = 0;
+  /// Each request that waits and each event stream holds a thread: past so many, a wait is not
+  /// honoured and a stream is refused, so that probes and statuses keep answering.
+  std::atomic<int> waiting = 0, streams = 0;
 };
 
 /// The answer to any request; a failure of ours that is not foreseen passes as an exception.

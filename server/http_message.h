@@ -4,6 +4,7 @@
 // hand.
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -35,11 +36,17 @@ struct FileSlice {
   std::uint64_t offset = 0, length = 0;
 };
 
+/// Server-sent events. `next` blocks for a second at most; an empty text says that there is nothing
+/// yet, none that the stream has ended. It is destroyed as soon as the client is gone.
+struct EventStream {
+  std::function<std::optional<std::string>()> next;
+};
+
 struct HttpResponse {
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers;
   std::string content_type;
-  std::variant<std::string, FileSlice> body;
+  std::variant<std::string, FileSlice, EventStream> body;
 };
 
 }  // namespace translucube::server

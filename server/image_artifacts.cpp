@@ -97,31 +97,50 @@ namespace {
 constexpr std::ptrdiff_t most_redeveloped = 64;
 constexpr std::string_view redeveloped_prefix = "derived-redeveloped-";
 
-void make_room(ArtifactStore& artifacts, const std::string& id) {
-  const std::vector<std::string> names = artifacts.names(id);
+void make_room(ArtifactStore& artifacts, const std::string& content) {
+  const std::vector<std::string> names = artifacts.names(content);
   const auto redeveloped = [](const std::string& name) {
     return name.starts_with(redeveloped_prefix);
   };
   if (std::ranges::count_if(names, redeveloped) < most_redeveloped) return;
   for (const std::string& name : names)
-    if (redeveloped(name)) artifacts.remove(id, name);
+    if (redeveloped(name)) artifacts.remove(content, name);
+}
+
+/// The result, if its picture lies there whole. What a broken disk took is forgotten, so that it
+/// can be made again.
+std::optional<StoredResult> whole_result(Darkroom& darkroom, const std::string& content) {
+  std::optional<StoredResult> result = darkroom.store.find_result(content);
+  if (!result) return std::nullopt;
+  const auto file = darkroom.artifacts.open(content, result->image);
+  if (file && (!result->image_bytes || *result->image_bytes == file->size())) return result;
+  spdlog::error("result {}: its picture is not whole", content);
+  if (darkroom.store.remove_result(content)) darkroom.artifacts.remove_all(content);
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const Job& job,
+std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::string& content,
+                                                const std::string& request,
                                                 const ImageQuery& query) {
-  auto& [catalog, colors, artifacts, busy] = darkroom;
+  auto& [catalog, colors, store, artifacts, busy] = darkroom;
   const auto checked = image_form(query, colors.displays());
   if (const auto* problem = std::get_if<Problem>(&checked)) return *problem;
   const auto& form = std::get<ImageForm>(checked);
   std::optional<api::Redeveloped> redeveloped;
   if (query.redevelopment.asked()) {
-    auto made = api::redevelop(job.request, query.redevelopment, catalog);
+    auto made = api::redevelop(request, query.redevelopment, catalog);
     if (auto* problem = std::get_if<Problem>(&made)) return std::move(*problem);
     redeveloped = std::get<api::Redeveloped>(std::move(made));
   }
-  const std::string original = job.image.value_or("");
+  const std::optional<StoredResult> result = whole_result(darkroom, content);
+  if (!result)
+    return Problem{ProblemCode::gone,
+                   "The picture was removed to make room; the same request makes it again.",
+                   {}};
+  store.touch_result(content);
+  const std::string& original = result->image;
   const bool as_stored =
       !redeveloped && form.format == ImageFormat::exr && form.colorspace == colorspaces[0];
   std::string artifact = as_stored ? original : derived_name(form);
@@ -129,37 +148,38 @@ std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const Job& j
     artifact =
         std::string(redeveloped_prefix) + content_hash(redeveloped->request) + '-' + artifact;
 
-  auto file = artifacts.open(job.id, artifact);
+  auto file = artifacts.open(content, artifact);
   if (!file && !as_stored) {
     const std::lock_guard lock(busy);
-    file = artifacts.open(job.id, artifact);  // another request may have made it meanwhile
+    file = artifacts.open(content, artifact);  // another request may have made it meanwhile
     if (!file) try {
         Image image;
         if (redeveloped) {
-          make_room(artifacts, job.id);
+          make_room(artifacts, content);
           const StoredExplorable stored =
-              read_explorable(artifacts.path(job.id, explorable_name(original)));
+              read_explorable(artifacts.path(content, explorable_name(original)));
           image = develop_explorable(stored.film, redeveloped->absorption.absorber,
                                      redeveloped->absorption.sigma_a_peak);
         } else {
-          image = read_image(artifacts.path(job.id, original));
+          image = read_image(artifacts.path(content, original));
         }
-        const std::string& request = redeveloped ? redeveloped->request : job.request;
-        artifacts.write(job.id, artifact, [&](const std::filesystem::path& temporary) {
+        artifacts.write(content, artifact, [&](const std::filesystem::path& temporary) {
           try {
-            write_form(temporary, std::move(image), form, colors, request);
+            write_form(temporary, std::move(image), form, colors,
+                       redeveloped ? redeveloped->request : request);
           } catch (const ImageError& error) {
             throw FileError(error.what());
           }
         });
-        file = artifacts.open(job.id, artifact);
+        store.resize_result(content, artifacts.bytes(content));
+        file = artifacts.open(content, artifact);
       } catch (const ImageError& error) {
-        spdlog::error("render {}: {}", job.id, error.what());
+        spdlog::error("result {}: {}", content, error.what());
       }
   }
   if (!file) return Problem{ProblemCode::internal, "The image of the render cannot be read.", {}};
   return ImageFile{file, std::string(mime_type(form.format)),
-                   '"' + content_hash(job.id + artifact + file->version()) + '"'};
+                   '"' + content_hash(content + artifact + file->version()) + '"'};
 }
 
 }  // namespace translucube::server

@@ -52,13 +52,16 @@ std::string explorable_name(const std::string& image);
 struct Darkroom {
   const api::Catalog& catalog;
   const ColorConfig& colors;
+  JobStore& store;
   ArtifactStore& artifacts;
   std::mutex busy{};
 };
 
-/// The image of a succeeded job in the form asked for: made on the first demand, then kept beside
-/// the EXR. Throws FileError.
-std::variant<ImageFile, api::Problem> image_artifact(Darkroom& darkroom, const Job& job,
+/// A finished picture in the form asked for: made on the first demand, then kept beside the EXR.
+/// `request`: the picture's, canonical. A problem where it has been removed to make room, or is not
+/// whole: then it is also forgotten. Throws FileError, StoreError.
+std::variant<ImageFile, api::Problem> image_artifact(Darkroom& darkroom, const std::string& content,
+                                                     const std::string& request,
                                                      const ImageQuery& query);
 
 }  // namespace translucube::server

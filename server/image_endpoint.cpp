@@ -1,6 +1,4 @@
-#include "server/image_endpoint.h"
-
-#include "server/endpoints.h"
+#include "server/handlers.h"
 #include "server/http_negotiation.h"
 
 namespace translucube::server {
@@ -46,10 +44,8 @@ HttpResponse body_response(const HttpRequest& request, const ImageFile& image) {
   return {200, {}, image.mime_type, FileSlice{image.file, 0, size}};
 }
 
-}  // namespace
-
-HttpResponse image_response(JobService& service, const HttpRequest& request,
-                            const std::string& id) {
+/// The query of an image, with what the headers ask for.
+Result<ImageQuery> image_query(const HttpRequest& request) {
   ImageQuery query;
   std::optional<ImageFormat> format;
   bool format_given = false;
@@ -68,22 +64,41 @@ HttpResponse image_response(JobService& service, const HttpRequest& request,
     if (name == "absorption") {
       const std::optional<double> number = api::absorption_number(value);
       if (!number)
-        return problem_response({ProblemCode::invalid_request,
-                                 "A query parameter is not valid.",
-                                 {{"?absorption", "must be a number in [0, 1]"}}});
+        return Problem{ProblemCode::invalid_request,
+                       "A query parameter is not valid.",
+                       {{"?absorption", "must be a number in [0, 1]"}}};
       query.redevelopment.absorption = number;
     }
   }
   if (!format_given) format = negotiate_image(request.header("accept"));
-  if (!format) return problem_response({ProblemCode::not_acceptable, what_there_is, {}});
+  if (!format) return Problem{ProblemCode::not_acceptable, what_there_is, {}};
   query.format = *format;
+  return query;
+}
 
-  const auto result = service.image(id, query);
+template <typename Find>
+HttpResponse image_response(const HttpRequest& request, Find&& find) {
+  const auto query = image_query(request);
+  if (const auto* problem = std::get_if<Problem>(&query)) return problem_response(*problem);
+  const auto result = find(std::get<ImageQuery>(query));
   if (const auto* problem = std::get_if<Problem>(&result)) return problem_response(*problem);
   const auto& image = std::get<ImageFile>(result);
   if (etag_matches(request.header("if-none-match"), image.etag))
     return with_headers_of(image, {304, {}, {}, {}});
   return with_headers_of(image, body_response(request, image));
+}
+
+}  // namespace
+
+HttpResponse get_image(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
+  return image_response(
+      request, [&](const ImageQuery& query) { return endpoints.service.image(ids.id, query); });
+}
+
+HttpResponse get_point_image(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
+  return image_response(request, [&](const ImageQuery& query) {
+    return endpoints.service.point_image(ids.id, ids.point, query);
+  });
 }
 
 }  // namespace translucube::server

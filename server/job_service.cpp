@@ -1,8 +1,8 @@
 #include "server/job_service.h"
 
-#include <spdlog/spdlog.h>
-
 #include "api/parse.h"
+#include "server/content.h"
+#include "server/job_service_parts.h"
 
 namespace translucube::server {
 namespace {
@@ -10,25 +10,7 @@ namespace {
 using api::Problem;
 using api::ProblemCode;
 
-// Probes may come often; each writes to the disk.
-constexpr std::chrono::seconds probe_interval(1);
-constexpr std::string_view cursor_prefix = "before-";
-
 Problem no_such_render() { return {ProblemCode::not_found, "There is no render of this id.", {}}; }
-
-/// Runs `work`; what the disk refuses becomes a problem that tells a client no inner detail.
-template <typename T, typename Work>
-T guarded(Work&& work) {
-  try {
-    return work();
-  } catch (const StoreError& error) {
-    spdlog::error("{}", error.what());
-  } catch (const FileError& error) {
-    spdlog::error("{}", error.what());
-  }
-  return Problem{
-      ProblemCode::storage_failure, "The disk of the service is full or cannot be used.", {}};
-}
 
 api::RenderStatus status_of(const Job& job) {
   api::RenderStatus status;
@@ -42,64 +24,11 @@ api::RenderStatus status_of(const Job& job) {
   status.material = job.material;
   status.stats = job.stats;
   status.error = job.error;
+  status.cached = job.cached;
   return status;
 }
 
 }  // namespace
-
-JobService::JobService(const api::Catalog& catalog, const ColorConfig& colors, JobStore& store,
-                       ArtifactStore& artifacts, Engine engine)
-    : catalog_(catalog),
-      colors_(colors),
-      store_(store),
-      artifacts_(artifacts),
-      darkroom_{catalog, colors, artifacts} {
-  clean_artifacts();
-  workers_ = std::make_unique<WorkerPool>(
-      Workshop{catalog, store, artifacts, std::move(engine), catalog.server.threads_per_worker},
-      catalog.server.workers, [this] { changed(); });
-}
-
-JobService::~JobService() { shut_down(); }
-
-void JobService::changed() {
-  {
-    const std::lock_guard lock(mutex_);
-    ++changes_;
-  }
-  change_.notify_all();
-}
-
-/// Removes what a crash left: files of renders that were removed or ended without an image, and
-/// beside an image its checkpoints and what a late double of its last task wrote. Derived pictures
-/// go too: the colour config may be another one since they were made.
-void JobService::clean_artifacts() {
-  for (const std::string& id : artifacts_.ids()) {
-    if (!is_id(id)) continue;
-    const std::optional<Job> job = store_.find(id);
-    if (!job || job->state == api::JobState::canceled || job->state == api::JobState::failed)
-      artifacts_.remove_all(id);
-    else if (job->image)
-      for (const std::string& name : artifacts_.names(id))
-        if (name != *job->image) artifacts_.remove(id, name);
-  }
-}
-
-/// Nobody can ask for these files any more: what cannot be removed now, because a worker is writing
-/// there for a moment yet, is removed by that worker or at the next start.
-void JobService::discard_files(const std::string& id) {
-  try {
-    artifacts_.remove_all(id);
-  } catch (const FileError& error) {
-    spdlog::warn("render {}: {}", id, error.what());
-  }
-}
-
-std::optional<Problem> JobService::refusal() const {
-  const std::lock_guard lock(mutex_);
-  if (!stopping_) return std::nullopt;
-  return Problem{ProblemCode::overloaded, "The service is shutting down.", {}};
-}
 
 Result<Submission> JobService::submit(std::string_view document,
                                       const std::optional<std::string>& idempotency_key) {
@@ -116,13 +45,11 @@ Result<Submission> JobService::submit(std::string_view document,
     job.total_samples = target->samples;
   const std::uint64_t pixels = std::uint64_t(request.width) * std::uint64_t(request.height);
   job.first_pass = plan_pass(0, pixels, job.total_samples).value();
+  job.content = content_key(request, job.request, catalog_);
 
   return guarded<Result<Submission>>([&]() -> Result<Submission> {
-    const auto outcome = store_.submit(job);
-    if (std::holds_alternative<IdempotencyMismatch>(outcome))
-      return Problem{ProblemCode::idempotency_mismatch,
-                     "This Idempotency-Key came before, with another request.",
-                     {}};
+    auto outcome = accepted<Submitted>(store_.submit(job));
+    if (auto* problem = std::get_if<Problem>(&outcome)) return std::move(*problem);
     const auto& submitted = std::get<Submitted>(outcome);
     if (submitted.created) workers_->wake();
     return Submission{status_of(submitted.job), submitted.created};
@@ -132,28 +59,18 @@ Result<Submission> JobService::submit(std::string_view document,
 Result<api::RenderStatus> JobService::get(const std::string& id) const {
   return guarded<Result<api::RenderStatus>>([&]() -> Result<api::RenderStatus> {
     const std::optional<Job> job = store_.find(id);
-    if (!job) return no_such_render();
+    if (!job || job->sweep_image) return no_such_render();
     return status_of(*job);
   });
 }
 
 Result<RenderPage> JobService::list(const ListQuery& query) const {
-  JobFilter filter{query.state, std::nullopt, query.limit + 1};
-  if (query.cursor) {
-    const std::string_view cursor = *query.cursor;
-    if (!cursor.starts_with(cursor_prefix) || !is_id(cursor.substr(cursor_prefix.size())))
-      return Problem{ProblemCode::invalid_request,
-                     "A query parameter is not valid.",
-                     {{"?cursor", "not a cursor that this service gave"}}};
-    filter.before_id = cursor.substr(cursor_prefix.size());
-  }
+  const auto filter = page_filter(query);
+  if (const auto* problem = std::get_if<Problem>(&filter)) return *problem;
   return guarded<Result<RenderPage>>([&]() -> Result<RenderPage> {
-    std::vector<Job> jobs = store_.list(filter);
+    std::vector<Job> jobs = store_.list(std::get<JobFilter>(filter));
     RenderPage page;
-    if (std::ssize(jobs) > query.limit) {
-      jobs.resize(static_cast<std::size_t>(query.limit));
-      page.next_cursor = std::string(cursor_prefix) + jobs.back().id;
-    }
+    page.next_cursor = cut_page(jobs, query.limit);
     for (const Job& job : jobs) page.renders.push_back(status_of(job));
     return page;
   });
@@ -161,6 +78,8 @@ Result<RenderPage> JobService::list(const ListQuery& query) const {
 
 Result<api::RenderStatus> JobService::cancel(const std::string& id) {
   return guarded<Result<api::RenderStatus>>([&]() -> Result<api::RenderStatus> {
+    const std::optional<Job> known = store_.find(id);
+    if (!known || known->sweep_image) return no_such_render();
     const std::optional<Job> job = store_.cancel(id);
     if (!job) return no_such_render();
     if (job->state == api::JobState::canceled) {
@@ -173,82 +92,33 @@ Result<api::RenderStatus> JobService::cancel(const std::string& id) {
 }
 
 std::optional<Problem> JobService::remove(const std::string& id) {
-  const auto result = guarded<Result<bool>>([&]() -> Result<bool> { return store_.remove(id); });
+  using Unused = std::vector<std::string>;
+  const auto result = guarded<Result<Unused>>([&]() -> Result<Unused> {
+    const std::optional<Job> known = store_.find(id);
+    if (!known || known->sweep_image) return no_such_render();
+    const std::optional<Unused> unused = store_.remove(id);
+    if (!unused) return no_such_render();
+    return *unused;
+  });
   if (const auto* problem = std::get_if<Problem>(&result)) return *problem;
-  if (!std::get<bool>(result)) return no_such_render();
   workers_->stop_job(id);
   discard_files(id);
+  for (const std::string& content : std::get<Unused>(result)) discard_files(content);
   changed();
   return std::nullopt;
 }
 
-Result<api::RenderStatus> JobService::wait(const std::string& id, std::chrono::milliseconds time) {
-  const auto deadline = std::chrono::steady_clock::now() + time;
-  while (true) {
-    std::uint64_t seen = 0;
-    {
-      const std::lock_guard lock(mutex_);
-      seen = changes_;
-    }
-    Result<api::RenderStatus> result = get(id);
-    const auto* status = std::get_if<api::RenderStatus>(&result);
-    if (!status || api::is_end(status->state)) return result;
-    std::unique_lock lock(mutex_);
-    if (!change_.wait_until(lock, deadline, [&] { return changes_ != seen || stopping_; }) ||
-        stopping_)
-      return result;
-  }
-}
-
 Result<ImageFile> JobService::image(const std::string& id, const ImageQuery& query) {
-  return guarded<Result<ImageFile>>([&]() -> Result<ImageFile> {
+  auto made = guarded<Result<ImageFile>>([&]() -> Result<ImageFile> {
     const std::optional<Job> job = store_.find(id);
-    if (!job) return no_such_render();
-    switch (job->state) {
-      case api::JobState::queued:
-      case api::JobState::running:
-        return Problem{ProblemCode::not_ready, "The render is not finished yet.", {}};
-      case api::JobState::failed:
-        return Problem{ProblemCode::conflict, "The render failed: it has no image.", {}};
-      case api::JobState::canceled:
-        return Problem{ProblemCode::conflict, "The render was canceled: it has no image.", {}};
-      case api::JobState::succeeded:
-        break;
-    }
-    auto made = image_artifact(darkroom_, *job, query);
-    if (auto* problem = std::get_if<Problem>(&made)) {
-      // Removed while it was read: then that is the answer.
-      if (problem->code == ProblemCode::internal && !store_.find(id)) return no_such_render();
-    }
-    return made;
+    if (!job || job->sweep_image) return no_such_render();
+    if (auto problem = no_picture(job->state)) return std::move(*problem);
+    return image_artifact(darkroom_, store_.pictures(id).at(0).content, job->request, query);
   });
-}
-
-std::optional<std::string> JobService::unready_reason() {
-  if (const auto problem = refusal()) return problem->detail;
-  const std::lock_guard lock(probe_mutex_);
-  const auto now = std::chrono::steady_clock::now();
-  if (now - probed_at_ < probe_interval && probed_at_.time_since_epoch().count() != 0)
-    return probe_failure_;
-  probed_at_ = now;
-  probe_failure_.reset();
-  try {
-    store_.check_writable();
-    artifacts_.check_writable();
-  } catch (const std::exception& error) {
-    spdlog::error("not ready: {}", error.what());
-    probe_failure_ = "The disk of the service is full or cannot be used.";
-  }
-  return probe_failure_;
-}
-
-void JobService::shut_down() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  change_.notify_all();
-  workers_->stop();
+  const auto* problem = std::get_if<Problem>(&made);
+  // Removed while it was read: then that is the answer.
+  if (problem && problem->code == ProblemCode::gone && !store_.find(id)) return no_such_render();
+  return made;
 }
 
 }  // namespace translucube::server

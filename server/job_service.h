@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "api/catalog.h"
 #include "api/problem.h"
 #include "api/render_status.h"
+#include "api/sweep_status.h"
 #include "renderer/color.h"
 #include "server/artifact_store.h"
 #include "server/image_artifacts.h"
@@ -26,13 +28,20 @@ namespace translucube::server {
 template <typename T>
 using Result = std::variant<T, api::Problem>;
 
-struct Submission {
-  api::RenderStatus status;
+template <typename Status>
+struct Accepted {
+  Status status;
   bool created = false;  ///< false: the idempotency key named it already
 };
+using Submission = Accepted<api::RenderStatus>;
+using SweepSubmission = Accepted<api::SweepStatus>;
 
 struct RenderPage {
   std::vector<api::RenderStatus> renders;
+  std::optional<std::string> next_cursor;
+};
+struct SweepPage {
+  std::vector<api::SweepSummary> sweeps;
   std::optional<std::string> next_cursor;
 };
 
@@ -42,14 +51,15 @@ struct ListQuery {
   int limit = 50;
 };
 
-/// Accepts, reports, cancels and removes renders, and owns the workers that trace them. Safe to
-/// share by threads. The catalog, colours and stores outlive it.
+/// Accepts, reports, cancels and removes renders and sweeps, and owns the workers that trace them.
+/// Safe to share by threads. The catalog, colours and stores outlive it.
 class JobService {
  public:
   JobService(const api::Catalog& catalog, const ColorConfig& colors, JobStore& store,
              ArtifactStore& artifacts, Engine engine = {});
   ~JobService();
 
+  // Renders (job_service.cpp).
   Result<Submission> submit(std::string_view document,
                             const std::optional<std::string>& idempotency_key);
   Result<api::RenderStatus> get(const std::string& id) const;
@@ -58,21 +68,47 @@ class JobService {
   Result<api::RenderStatus> cancel(const std::string& id);
   /// Cancels if needed and removes all data.
   std::optional<api::Problem> remove(const std::string& id);
-  /// The status at the render's end, or when the time is over or the service stops.
-  Result<api::RenderStatus> wait(const std::string& id, std::chrono::milliseconds time);
   Result<ImageFile> image(const std::string& id, const ImageQuery& query);
+
+  // Sweeps (job_service_sweeps.cpp).
+  /// What a dry run answers, JSON text.
+  Result<std::string> count_sweep(std::string_view document) const;
+  Result<SweepSubmission> submit_sweep(std::string_view document,
+                                       const std::optional<std::string>& idempotency_key);
+  Result<api::SweepStatus> get_sweep(const std::string& id) const;
+  Result<SweepPage> list_sweeps(const ListQuery& query) const;
+  Result<api::SweepStatus> cancel_sweep(const std::string& id);
+  std::optional<api::Problem> remove_sweep(const std::string& id);
+  /// `point`: a client's text.
+  Result<ImageFile> point_image(const std::string& id, const std::string& point,
+                                const ImageQuery& query);
+
+  // Changes (job_service_changes.cpp).
+  /// Calls `look` now and after every change, until it returns true, the time is over or the
+  /// service stops.
+  void watch(std::chrono::milliseconds time, const std::function<bool()>& look);
+  /// Those after `number`, and whether the last of them is the end of the render or sweep.
+  struct Events {
+    std::vector<Event> events;
+    bool ended = false;
+  };
+  Result<Events> events_of_render(const std::string& id, std::uint64_t after) const;
+  Result<Events> events_of_sweep(const std::string& id, std::uint64_t after) const;
 
   /// Empty if the service can take work, else the reason why not.
   std::optional<std::string> unready_reason();
+  QueueGauges gauges() const { return store_.gauges(); }
 
   /// Refuses new work, ends all waiting, stops the workers at their next tile and gives their tasks
   /// back to the store.
   void shut_down();
+  bool stopping() const;
 
  private:
   std::optional<api::Problem> refusal() const;
   void clean_artifacts();
-  void discard_files(const std::string& id);
+  void keep_within_quota();
+  void discard_files(const std::string& folder);
   void changed();
 
   const api::Catalog& catalog_;
@@ -85,7 +121,7 @@ class JobService {
   std::uint64_t changes_ = 0;
   bool stopping_ = false;
 
-  std::mutex probe_mutex_;
+  std::mutex probe_mutex_, quota_mutex_;
   std::chrono::steady_clock::time_point probed_at_{};
   std::optional<std::string> probe_failure_;
 

@@ -1,72 +1,18 @@
 #include "server/job_store.h"
 
 #include <cassert>
-#include <limits>
 
+#include "server/job_store_rows.h"
 #include "server/job_store_schema.h"
-#include "server/job_store_sqlite.h"
 
 namespace translucube::server {
-namespace {
 
 using api::JobState;
+using rows::Lock;
+using rows::text;
 using sql::Connection;
 using sql::Statement;
 using sql::Transaction;
-using Lock = std::lock_guard<std::mutex>;
-
-constexpr const char* select_job =
-    "SELECT id, state, request, material, created_ms, started_ms, finished_ms, passes, samples, "
-    "total_samples, relative_error, seconds, eta_seconds, stats, error, image FROM jobs ";
-
-std::string text(JobState state) { return std::string(api::name(state)); }
-
-Job job_of(const Statement& row) {
-  const std::optional<JobState> state = api::job_state(row.text(1));
-  if (!state) throw StoreError(StoreError::Kind::corrupt, "the job store: an unknown job state");
-  Job job{.id = row.text(0),
-          .state = *state,
-          .request = row.text(2),
-          .material = row.text(3),
-          .created_ms = row.integer(4),
-          .started_ms = row.optional_integer(5),
-          .finished_ms = row.optional_integer(6),
-          .progress = {},
-          .stats = row.optional_text(13),
-          .error = row.optional_text(14),
-          .image = row.optional_text(15)};
-  job.progress.passes = static_cast<std::uint32_t>(row.integer(7));
-  job.progress.samples = static_cast<std::uint32_t>(row.integer(8));
-  if (!row.is_null(9)) job.progress.total_samples = static_cast<std::uint32_t>(row.integer(9));
-  job.progress.relative_error =
-      row.optional_real(10).value_or(std::numeric_limits<double>::quiet_NaN());
-  job.progress.seconds = row.real(11);
-  job.progress.eta_seconds = row.optional_real(12);
-  return job;
-}
-
-void insert_task(Connection& connection, const std::string& id, const Pass& pass) {
-  Statement(connection,
-            "INSERT INTO tasks(job_id, pass_index, first_sample, sample_count, state) "
-            "VALUES (?, ?, ?, ?, 'ready')")
-      .bind(id, pass.index, pass.first_sample, pass.count)
-      .run();
-}
-
-void delete_open_tasks(Connection& connection, const std::string& id) {
-  Statement(connection, "DELETE FROM tasks WHERE job_id = ? AND state <> 'done'").bind(id).run();
-}
-
-void store_progress(Connection& connection, const std::string& id, const Progress& progress) {
-  Statement(connection,
-            "UPDATE jobs SET passes = ?, samples = ?, total_samples = ?, relative_error = ?, "
-            "seconds = ?, eta_seconds = ? WHERE id = ?")
-      .bind(progress.passes, progress.samples, progress.total_samples, progress.relative_error,
-            progress.seconds, progress.eta_seconds, id)
-      .run();
-}
-
-}  // namespace
 
 JobStore::JobStore(const std::filesystem::path& file, StoreOptions options)
     : options_(std::move(options)), owner_(random_hex(16)) {
@@ -74,13 +20,18 @@ JobStore::JobStore(const std::filesystem::path& file, StoreOptions options)
   prepare_schema(*writer_, file);
 
   Transaction transaction(*writer_);
-  Statement(*writer_, "UPDATE tasks SET state = 'ready', owner = NULL WHERE state = 'leased'")
+  Statement(*writer_,
+            "UPDATE tasks SET state = 'ready', owner = NULL, not_before_ms = 0 "
+            "WHERE state <> 'done'")
       .run();
-  assert(api::may_follow(JobState::running, JobState::queued));
-  Statement(*writer_, "UPDATE jobs SET state = ? WHERE state = ?")
-      .bind(text(JobState::queued), text(JobState::running))
-      .run();
-  Statement newest(*writer_, "SELECT MAX(id) FROM jobs");
+  std::vector<std::string> interrupted;
+  Statement running(*writer_, "SELECT id FROM jobs WHERE state = ?");
+  running.bind(text(JobState::running));
+  while (running.step()) interrupted.push_back(running.text(0));
+  for (const std::string& id : interrupted) move(id, JobState::queued);
+  Statement newest(*writer_,
+                   "SELECT MAX(id) FROM (SELECT MAX(id) AS id FROM jobs UNION ALL "
+                   "SELECT MAX(id) FROM sweeps)");
   ids_ = std::make_unique<IdSource>(newest.step() ? newest.text(0) : std::string());
   transaction.commit();
 
@@ -91,35 +42,54 @@ JobStore::JobStore(const std::filesystem::path& file, StoreOptions options)
 
 JobStore::~JobStore() = default;
 
-std::variant<Submitted, IdempotencyMismatch> JobStore::submit(const NewJob& job) {
+bool JobStore::queue_has_room(std::size_t jobs) {
+  Statement open(*writer_, "SELECT COUNT(*) FROM jobs WHERE state IN (?, ?)");
+  open.bind(text(JobState::queued), text(JobState::running)).step();
+  return static_cast<std::uint64_t>(open.integer(0)) + jobs <= options_.most_queued;
+}
+
+void JobStore::insert_pictures(const std::string& id, const std::vector<Picture>& lanes) {
+  for (std::size_t lane = 0; lane < lanes.size(); ++lane)
+    Statement(*writer_, "INSERT INTO pictures(job_id, lane, point, content) VALUES (?, ?, ?, ?)")
+        .bind(id, static_cast<std::int64_t>(lane), lanes[lane].point, lanes[lane].content)
+        .run();
+}
+
+std::variant<Submitted, IdempotencyMismatch, QueueFull> JobStore::submit(const NewJob& job) {
   const Lock lock(writer_->mutex);
   Transaction transaction(*writer_);
   if (job.idempotency_key) {
-    Statement same(*writer_, std::string(select_job) + "WHERE idempotency_key = ?");
+    Statement same(*writer_, std::string(rows::select_job) + "WHERE idempotency_key = ?");
     if (same.bind(*job.idempotency_key).step()) {
-      Job known = job_of(same);
+      Job known = rows::job_of(same);
       if (known.request != job.request) return IdempotencyMismatch{};
       return Submitted{std::move(known), false};
     }
   }
+  Statement made(*writer_, "SELECT stats FROM results WHERE content = ?");
+  const bool cached = made.bind(job.content).step();
+  if (!cached && !queue_has_room(1)) return QueueFull{};
   const std::int64_t now = options_.clock();
   const std::string id = ids_->next(now);
   Statement(*writer_,
             "INSERT INTO jobs(id, state, request, material, idempotency_key, created_ms, "
-            "total_samples) VALUES (?, ?, ?, ?, ?, ?, ?)")
-      .bind(id, text(JobState::queued), job.request, job.material, job.idempotency_key, now,
-            job.total_samples)
+            "finished_ms, total_samples, stats, cached) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      .bind(id, text(cached ? JobState::succeeded : JobState::queued), job.request, job.material,
+            job.idempotency_key, now, cached ? std::optional(now) : std::nullopt, job.total_samples,
+            cached ? std::optional(made.text(0)) : std::nullopt, cached ? 1 : 0)
       .run();
-  insert_task(*writer_, id, job.first_pass);
+  insert_pictures(id, {{0, job.content}});
+  if (!cached) rows::insert_task(*writer_, id, job.first_pass, Priority::interactive);
+  tell_state(id);
   Submitted submitted{*find_on(*writer_, id), true};
   transaction.commit();
   return submitted;
 }
 
 std::optional<Job> JobStore::find_on(Connection& connection, const std::string& id) const {
-  Statement statement(connection, std::string(select_job) + "WHERE id = ?");
+  Statement statement(connection, std::string(rows::select_job) + "WHERE id = ?");
   if (!statement.bind(id).step()) return std::nullopt;
-  return job_of(statement);
+  return rows::job_of(statement);
 }
 
 std::optional<Job> JobStore::find(const std::string& id) const {
@@ -128,7 +98,7 @@ std::optional<Job> JobStore::find(const std::string& id) const {
 }
 
 std::vector<Job> JobStore::list(const JobFilter& filter) const {
-  std::string query = std::string(select_job) + "WHERE id < ? ";
+  std::string query = std::string(rows::select_job) + "WHERE sweep_id IS NULL AND id < ? ";
   if (filter.state) query += "AND state = ? ";
   query += "ORDER BY id DESC LIMIT ?";
 
@@ -138,16 +108,16 @@ std::vector<Job> JobStore::list(const JobFilter& filter) const {
   if (filter.state) statement.bind(text(*filter.state));
   statement.bind(filter.limit);
   std::vector<Job> jobs;
-  while (statement.step()) jobs.push_back(job_of(statement));
+  while (statement.step()) jobs.push_back(rows::job_of(statement));
   return jobs;
 }
 
 /// Inside a transaction: the only place that changes a job's state.
 bool JobStore::move(const std::string& id, JobState to) {
-  Statement current(*writer_, "SELECT state FROM jobs WHERE id = ?");
+  Statement current(*writer_, "SELECT state, sweep_id FROM jobs WHERE id = ?");
   if (!current.bind(id).step()) return false;
-  const std::optional<JobState> from = api::job_state(current.text(0));
-  if (!from || !api::may_follow(*from, to)) return false;
+  const std::optional<std::string> sweep = current.optional_text(1);
+  if (!api::may_follow(rows::state_of(current.text(0)), to)) return false;
   const std::int64_t now = options_.clock();
   if (to == JobState::running)
     Statement(*writer_, "UPDATE jobs SET started_ms = COALESCE(started_ms, ?) WHERE id = ?")
@@ -158,141 +128,40 @@ bool JobStore::move(const std::string& id, JobState to) {
         .bind(now, id)
         .run();
   Statement(*writer_, "UPDATE jobs SET state = ? WHERE id = ?").bind(text(to), id).run();
+  tell_state(id);
+  if (sweep) follow_sweep(*sweep);
   return true;
 }
 
 std::optional<Job> JobStore::cancel(const std::string& id) {
   const Lock lock(writer_->mutex);
   Transaction transaction(*writer_);
-  if (move(id, JobState::canceled)) delete_open_tasks(*writer_, id);
+  if (move(id, JobState::canceled)) rows::delete_open_tasks(*writer_, id);
   std::optional<Job> job = find_on(*writer_, id);
   transaction.commit();
   return job;
 }
 
-bool JobStore::remove(const std::string& id) {
+std::optional<std::vector<std::string>> JobStore::remove(const std::string& id) {
   const Lock lock(writer_->mutex);
+  Transaction transaction(*writer_);
+  const std::vector<std::string> contents = rows::contents_of(*writer_, "job_id = ?", id);
   Statement(*writer_, "DELETE FROM jobs WHERE id = ?").bind(id).run();
-  return writer_->changes() > 0;
-}
-
-std::optional<Task> JobStore::claim_one(const std::string& only_job) {
-  const std::int64_t now = options_.clock();
-  Statement statement(*writer_, std::string(R"sql(
-UPDATE tasks SET state = 'leased', owner = ?, lease_until_ms = ?,
-                 fencing_token = fencing_token + 1, attempts = attempts + 1
-WHERE (job_id, pass_index) = (
-  SELECT job_id, pass_index FROM tasks
-  WHERE state <> 'done' AND ((state = 'ready' AND not_before_ms <= ?)
-                             OR (state = 'leased' AND lease_until_ms < ?)) )sql") +
-                                    (only_job.empty() ? "" : "AND job_id = ? ") +
-                                    R"sql(
-  ORDER BY job_id, pass_index LIMIT 1)
-RETURNING job_id, pass_index, first_sample, sample_count, fencing_token, attempts)sql");
-  statement.bind(owner_, now + options_.lease_ms, now, now);
-  if (!only_job.empty()) statement.bind(only_job);
-  if (!statement.step()) return std::nullopt;
-  Task task{statement.text(0),
-            {static_cast<std::uint32_t>(statement.integer(1)),
-             static_cast<std::uint32_t>(statement.integer(2)),
-             static_cast<std::uint32_t>(statement.integer(3))},
-            statement.integer(4),
-            static_cast<int>(statement.integer(5))};
-  statement.run();
-  return task;
-}
-
-std::optional<Task> JobStore::claim(const std::string& preferred) {
-  const Lock lock(writer_->mutex);
-  Transaction transaction(*writer_);
-  std::optional<Task> task;
-  if (!preferred.empty()) task = claim_one(preferred);
-  if (!task) task = claim_one({});
-  if (!task) return std::nullopt;
-  move(task->job_id, JobState::running);  // no move where it is running already
+  if (writer_->changes() == 0) return std::nullopt;
+  const std::vector<std::string> unused = drop_unused_results(contents);
   transaction.commit();
-  return task;
+  return unused;
 }
 
-bool JobStore::holds(const Task& task) {
-  Statement statement(*writer_,
-                      "SELECT 1 FROM tasks WHERE job_id = ? AND pass_index = ? AND "
-                      "state = 'leased' AND fencing_token = ?");
-  return statement.bind(task.job_id, task.pass.index, task.fencing_token).step();
-}
-
-bool JobStore::renew(const Task& task) {
-  const Lock lock(writer_->mutex);
-  if (!holds(task)) return false;
-  Statement(*writer_, "UPDATE tasks SET lease_until_ms = ? WHERE job_id = ? AND pass_index = ?")
-      .bind(options_.clock() + options_.lease_ms, task.job_id, task.pass.index)
-      .run();
-  return true;
-}
-
-bool JobStore::release(const Task& task, std::int64_t delay_ms, bool counts_as_attempt) {
-  const Lock lock(writer_->mutex);
-  Transaction transaction(*writer_);
-  if (!holds(task)) return false;
-  Statement(*writer_,
-            "UPDATE tasks SET state = 'ready', owner = NULL, not_before_ms = ?, "
-            "attempts = attempts - ? WHERE job_id = ? AND pass_index = ?")
-      .bind(options_.clock() + delay_ms, counts_as_attempt ? 0 : 1, task.job_id, task.pass.index)
-      .run();
-  move(task.job_id, JobState::queued);
-  transaction.commit();
-  return true;
-}
-
-bool JobStore::complete(const Task& task, const TaskResult& result, const Pass& next) {
-  const Lock lock(writer_->mutex);
-  Transaction transaction(*writer_);
-  if (!holds(task)) return false;
-  Statement(*writer_,
-            "UPDATE tasks SET state = 'done', seconds = ? WHERE job_id = ? AND pass_index = ?")
-      .bind(result.seconds, task.job_id, task.pass.index)
-      .run();
-  store_progress(*writer_, task.job_id, result.progress);
-  insert_task(*writer_, task.job_id, next);
-  transaction.commit();
-  return true;
-}
-
-bool JobStore::finish(const Task& task, const TaskResult& result, bool with_pass,
-                      const std::string& stats, const std::string& image) {
-  const Lock lock(writer_->mutex);
-  Transaction transaction(*writer_);
-  if (!holds(task)) return false;
-  if (with_pass)
-    Statement(*writer_,
-              "UPDATE tasks SET state = 'done', seconds = ? WHERE job_id = ? AND pass_index = ?")
-        .bind(result.seconds, task.job_id, task.pass.index)
-        .run();
-  delete_open_tasks(*writer_, task.job_id);
-  store_progress(*writer_, task.job_id, result.progress);
-  Statement(*writer_, "UPDATE jobs SET stats = ?, image = ? WHERE id = ?")
-      .bind(stats, image, task.job_id)
-      .run();
-  if (!move(task.job_id, JobState::succeeded)) return false;
-  transaction.commit();
-  return true;
-}
-
-bool JobStore::fail(const Task& task, const std::string& error) {
-  const Lock lock(writer_->mutex);
-  Transaction transaction(*writer_);
-  if (!holds(task)) return false;
-  delete_open_tasks(*writer_, task.job_id);
-  Statement(*writer_, "UPDATE jobs SET error = ? WHERE id = ?").bind(error, task.job_id).run();
-  if (!move(task.job_id, JobState::failed)) return false;
-  transaction.commit();
-  return true;
-}
-
-double JobStore::traced_seconds(const std::string& id) const {
-  const Lock lock(writer_->mutex);
-  Statement statement(*writer_, "SELECT SUM(seconds) FROM tasks WHERE job_id = ?");
-  return statement.bind(id).step() ? statement.real(0) : 0;
+std::vector<Picture> JobStore::pictures(const std::string& job_id) const {
+  const Lock lock(reader_->mutex);
+  Statement statement(*reader_,
+                      "SELECT point, content FROM pictures WHERE job_id = ? ORDER BY lane");
+  statement.bind(job_id);
+  std::vector<Picture> lanes;
+  while (statement.step())
+    lanes.push_back({static_cast<std::uint32_t>(statement.integer(0)), statement.text(1)});
+  return lanes;
 }
 
 void JobStore::check_writable() {

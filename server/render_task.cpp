@@ -8,8 +8,8 @@
 #include <new>
 #include <thread>
 
-#include "api/parse.h"
 #include "api/render_status.h"
+#include "api/sweep.h"
 #include "renderer/deadline.h"
 #include "renderer/explorable.h"
 #include "renderer/image_io.h"
@@ -51,7 +51,7 @@ int TaskRunner::threads() const {
 }
 
 std::optional<std::uint32_t> TaskRunner::total_samples() const {
-  const auto* target = std::get_if<SampleTarget>(&hand_.quality);
+  const auto* target = std::get_if<SampleTarget>(&hand_.job.quality());
   return target ? std::optional(target->samples) : std::nullopt;
 }
 
@@ -104,7 +104,7 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
     std::optional<Deadline> deadline;
     double time_left = std::numeric_limits<double>::infinity();
     // The first pass always ends: a picture of nothing is of no use.
-    if (const auto* target = std::get_if<TimeTarget>(&hand_.quality);
+    if (const auto* target = std::get_if<TimeTarget>(&hand_.job.quality());
         target && task.pass.index > 0) {
       time_left = target->seconds - hand_.seconds;
       deadline.emplace(work, time_left);
@@ -134,8 +134,9 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
     return;
   }
   const double seconds = hand_.seconds + task_seconds;
-  const std::optional<Pass> next = plan_pass(hand_.film.passes, hand_.pixels, total_samples());
-  if (!next || meets(hand_.quality, hand_.film, seconds)) {
+  const std::optional<Pass> next =
+      plan_pass(hand_.film.passes, hand_.job.pixels(), total_samples());
+  if (!next || meets(hand_.job.quality(), hand_.film, seconds)) {
     pass.reset();
     finish(task, task_seconds, true);
     return;
@@ -144,7 +145,7 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
   if (!stored && task_seconds <= seconds_between_checkpoints)
     workshop_.artifacts.write_pass(task.job_id, *pass);
   pass.reset();
-  const TaskResult result{task_seconds, progress_of(hand_.film, hand_.quality, seconds)};
+  const TaskResult result{task_seconds, progress_of(hand_.film, hand_.job.quality(), seconds)};
   if (!workshop_.store.complete(task, result, *next)) {
     forget();
     tidy(task.job_id);
@@ -164,16 +165,18 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
   if (hand_.id == task.job_id && hand_.film.passes == task.pass.index) return true;
   if (hand_.id != task.job_id) {
     forget();
-    const auto parsed = api::parse_render_request(job.request, workshop_.catalog);
-    if (const auto* problem = std::get_if<api::Problem>(&parsed)) {
-      fail(task, *problem);  // what it names has gone since it was accepted
+    // Another job may have made the same pictures since this one was accepted.
+    if (workshop_.store.finish_from_results(task)) {
+      workshop_.artifacts.remove_all(task.job_id);
       return false;
     }
-    const auto& request = std::get<api::RenderRequest>(parsed);
-    hand_.scene = workshop_.engine.build(api::scene_spec(request, workshop_.catalog));
-    hand_.canonical = job.request;
-    hand_.quality = request.quality;
-    hand_.pixels = std::uint64_t(request.width) * std::uint64_t(request.height);
+    auto traced = traced_job(job, workshop_.store, workshop_.catalog);
+    if (const auto* problem = std::get_if<api::Problem>(&traced)) {
+      fail(task, *problem);
+      return false;
+    }
+    hand_.job = std::get<TracedJob>(std::move(traced));
+    hand_.scene = workshop_.engine.build(api::scene_spec(hand_.job.requests, workshop_.catalog));
     hand_.id = task.job_id;
   }
   hand_.film = workshop_.artifacts.read_film(task.job_id, task.pass.index);
@@ -181,7 +184,8 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
   hand_.seconds_at_checkpoint = hand_.seconds;
   // A checkpoint lost to a broken disk costs time, not the render.
   while (hand_.film.passes < task.pass.index) {
-    const std::optional<Pass> lost = plan_pass(hand_.film.passes, hand_.pixels, total_samples());
+    const std::optional<Pass> lost =
+        plan_pass(hand_.film.passes, hand_.job.pixels(), total_samples());
     std::optional<PassFilm> pass;
     if (lost) pass = workshop_.artifacts.read_pass(task.job_id, *lost);
     if (lost && !pass) {
@@ -201,43 +205,66 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
   return true;
 }
 
+/// The pictures of all lanes, and what the store keeps of them.
+std::vector<StoredResult> TaskRunner::write_pictures(const Task& task, const std::string& stats) {
+  // The name belongs to this claim: a late double of it cannot touch a picture that is served.
+  const std::string name = "image-" + task.job_id + '-' + std::to_string(task.pass.index) + '-' +
+                           std::to_string(task.fencing_token) + ".exr";
+  std::vector<StoredResult> results;
+  for (std::size_t lane = 0; lane < hand_.job.requests.size(); ++lane) {
+    StoredResult result{hand_.job.contents[lane], name, {}, 0, stats};
+    const std::string& canonical = hand_.job.canonical[lane];
+    const auto write = [&](const std::string& file_name, const auto& writer) {
+      workshop_.artifacts.write(result.content, file_name, [&](const std::filesystem::path& file) {
+        try {
+          writer(file);
+        } catch (const ImageError& error) {
+          throw FileError(error.what());
+        }
+      });
+      return std::filesystem::file_size(workshop_.artifacts.path(result.content, file_name));
+    };
+    Image picture;
+    if (hand_.film.shares) {
+      const ExplorableFilm film = explorable_film(*hand_.scene, hand_.film);
+      result.bytes = write(explorable_name(name), [&](const std::filesystem::path& file) {
+        write_explorable(file, film, canonical);
+      });
+      picture = develop_explorable(film, *hand_.scene, workshop_.threads);
+    } else {
+      picture = develop(hand_.film, static_cast<int>(lane));
+    }
+    result.image_bytes = write(name, [&](const std::filesystem::path& file) {
+      write_image(file, picture, ImageFormat::exr, {canonical, "lin_rec709"});
+    });
+    result.bytes += *result.image_bytes;
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+/// Removes pictures of ours that the store did not take.
+void TaskRunner::discard(const std::vector<StoredResult>& results) {
+  for (const StoredResult& ours : results) {
+    const std::optional<StoredResult> kept = workshop_.store.find_result(ours.content);
+    if (kept && kept->image == ours.image) continue;
+    workshop_.artifacts.remove(ours.content, ours.image);
+    workshop_.artifacts.remove(ours.content, explorable_name(ours.image));
+  }
+}
+
 void TaskRunner::finish(const Task& task, double task_seconds, bool with_pass) {
   const double seconds = hand_.seconds + task_seconds;
-  // The name belongs to this claim: a late double of it cannot touch a picture that is served.
-  const std::string image = "image-" + std::to_string(task.pass.index) + '-' +
-                            std::to_string(task.fencing_token) + ".exr";
-  const auto write = [&](const std::string& name, const auto& writer) {
-    workshop_.artifacts.write(task.job_id, name, [&](const std::filesystem::path& file) {
-      try {
-        writer(file);
-      } catch (const ImageError& error) {
-        throw FileError(error.what());
-      }
-    });
-  };
-  const auto write_picture = [&](const Image& picture) {
-    write(image, [&](const std::filesystem::path& file) {
-      write_image(file, picture, ImageFormat::exr, {hand_.canonical, "lin_rec709"});
-    });
-  };
-  if (hand_.film.shares) {
-    const ExplorableFilm film = explorable_film(*hand_.scene, hand_.film);
-    write(explorable_name(image), [&](const std::filesystem::path& file) {
-      write_explorable(file, film, hand_.canonical);
-    });
-    write_picture(develop_explorable(film, *hand_.scene, workshop_.threads));
-  } else {
-    write_picture(develop(hand_.film));
-  }
-  const RenderStats stats = workshop_.engine.stats(*hand_.scene, hand_.film, seconds, threads());
-  const TaskResult result{task_seconds, progress_of(hand_.film, hand_.quality, seconds)};
-  if (workshop_.store.finish(task, result, with_pass, api::stats_json(stats), image)) {
-    workshop_.artifacts.remove_films(task.job_id);
-  } else {
-    workshop_.artifacts.remove(task.job_id, image);
-    workshop_.artifacts.remove(task.job_id, explorable_name(image));
+  const std::string stats =
+      api::stats_json(workshop_.engine.stats(*hand_.scene, hand_.film, seconds, threads()));
+  const std::vector<StoredResult> results = write_pictures(task, stats);
+  const TaskResult result{task_seconds, progress_of(hand_.film, hand_.job.quality(), seconds)};
+  const bool finished = workshop_.store.finish(task, result, with_pass, stats, results);
+  discard(results);
+  if (finished)
+    workshop_.artifacts.remove_all(task.job_id);
+  else
     tidy(task.job_id);
-  }
   forget();
 }
 

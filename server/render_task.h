@@ -9,6 +9,7 @@
 #include "server/artifact_store.h"
 #include "server/engine.h"
 #include "server/job_store.h"
+#include "server/traced_job.h"
 
 namespace translucube::server {
 
@@ -37,9 +38,7 @@ class TaskRunner {
  private:
   struct Hand {
     std::string id;
-    std::string canonical;
-    Quality quality;
-    std::uint64_t pixels = 0;
+    TracedJob job;
     std::shared_ptr<const Scene> scene;
     Film film;
     double seconds = 0;  ///< wall clock of tracing, over all runs of the service
@@ -49,6 +48,8 @@ class TaskRunner {
   void run_or_throw(const Task& task, std::stop_source work);
   bool take_in_hand(const Task& task, const Job& job, std::stop_token stop);
   void finish(const Task& task, double task_seconds, bool with_pass);
+  std::vector<StoredResult> write_pictures(const Task& task, const std::string& stats);
+  void discard(const std::vector<StoredResult>& results);
   void fail(const Task& task, const api::Problem& problem);
   void retry_later(const Task& task, const std::string& reason);
   void tidy(const std::string& id);

@@ -1,6 +1,8 @@
 #include "server/worker.h"
 
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <chrono>
 
@@ -8,11 +10,13 @@ namespace translucube::server {
 
 // Leases run out and delayed tasks fall due without anyone saying so.
 constexpr std::chrono::milliseconds poll_interval(500);
+constexpr unsigned interactive_share = 3;  ///< interactive tasks for one of a batch
+constexpr int nice_of_workers = 10;
 
 WorkerPool::WorkerPool(Workshop workshop, int workers, std::function<void()> on_change)
-    : workshop_(std::move(workshop)), on_change_(std::move(on_change)) {
+    : workshop_(std::move(workshop)), on_change_(std::move(on_change)), workers_(workers) {
   for (int i = 0; i < workers; ++i)
-    threads_.emplace_back([this](std::stop_token stop) { work(stop); });
+    threads_.emplace_back([this, i](std::stop_token stop) { work(i, stop); });
 }
 
 WorkerPool::~WorkerPool() { stop(); }
@@ -35,7 +39,20 @@ void WorkerPool::stop_job(const std::string& id) {
   for (auto [at, end] = running_.equal_range(id); at != end; ++at) at->second.request_stop();
 }
 
-void WorkerPool::work(std::stop_token stop) {
+std::optional<Task> WorkerPool::claim(int worker, const std::string& in_hand) {
+  JobStore& store = workshop_.store;
+  if (workers_ > 1 && worker == 0) return store.claim(Priority::interactive, in_hand);
+  const bool batch_first = turns_++ % (interactive_share + 1) == interactive_share;
+  const Priority first = batch_first ? Priority::batch : Priority::interactive;
+  const Priority second = batch_first ? Priority::interactive : Priority::batch;
+  auto task = store.claim(first, in_hand);
+  return task ? task : store.claim(second, in_hand);
+}
+
+void WorkerPool::work(int worker, std::stop_token stop) {
+  // Per thread on Linux, and inherited by those that the renderer starts. Without the right to it
+  // the work goes on.
+  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice_of_workers);
   TaskRunner runner(workshop_);
   while (!stop.stop_requested()) {
     std::uint64_t seen = 0;
@@ -45,7 +62,7 @@ void WorkerPool::work(std::stop_token stop) {
     }
     std::optional<Task> task;
     try {
-      task = workshop_.store.claim(runner.job_in_hand());
+      task = claim(worker, runner.job_in_hand());
     } catch (const StoreError& error) {
       spdlog::error("no task claimed: {}", error.what());
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <map>
@@ -13,7 +14,10 @@
 namespace translucube::server {
 
 /// A bounded pool of threads that claim tasks and work on them. Tasks of different renders run at
-/// the same time; those of one render follow each other, since each plans the next.
+/// the same time; those of one render follow each other, since each plans the next. Of several
+/// workers the first takes no batch work, so that whoever waits for a picture is never behind more
+/// than other such pictures; the others take three interactive tasks for one of a batch while both
+/// kinds wait. They yield the processor to the threads that answer.
 class WorkerPool {
  public:
   /// `on_change` is called by the workers whenever a job in the store has changed.
@@ -25,7 +29,8 @@ class WorkerPool {
   void stop();  ///< stops all passes, gives their tasks back, waits for the threads
 
  private:
-  void work(std::stop_token stop);
+  void work(int worker, std::stop_token stop);
+  std::optional<Task> claim(int worker, const std::string& in_hand);
   void run(TaskRunner& runner, const Task& task, std::stop_token stop);
 
   Workshop workshop_;
@@ -33,6 +38,8 @@ class WorkerPool {
   std::mutex mutex_;
   std::condition_variable_any awake_;
   std::uint64_t wakes_ = 0;
+  std::atomic<unsigned> turns_ = 0;
+  int workers_;
   std::multimap<std::string, std::stop_source> running_;  ///< by job
   std::vector<std::jthread> threads_;
 };

@@ -61,14 +61,15 @@ struct FakeRenderer {
 
  private:
   struct Picture {
-    int width, height;
+    int width, height, lanes;
     std::uint64_t seed;
   };
 
   std::shared_ptr<const Scene> build(const SceneSpec& spec) {
     ++builds;
     before_build(spec);
-    const auto picture = std::make_shared<Picture>(Picture{spec.width, spec.height, spec.seed});
+    const auto picture = std::make_shared<Picture>(Picture{
+        spec.width, spec.height, 1 + static_cast<int>(spec.more_absorptions.size()), spec.seed});
     return {picture, reinterpret_cast<const Scene*>(picture.get())};
   }
 
@@ -91,8 +92,9 @@ struct FakeRenderer {
     PassFilm film;
     film.width = picture.width;
     film.height = picture.height;
+    film.lanes = picture.lanes;
     film.pass = pass;
-    for (int i = 0; i < 3 * picture.width * picture.height; ++i)
+    for (int i = 0; i < 3 * picture.width * picture.height * picture.lanes; ++i)
       film.sum.push_back(
           static_cast<float>(pass.count) *
           (1.0f + 0.1f * static_cast<float>((pass.index * 7 + i + picture.seed) % 11)));
@@ -130,7 +132,12 @@ class TestService {
   }
 
   api::RenderStatus wait(const std::string& id, int seconds = 120) {
-    auto result = service.wait(id, std::chrono::seconds(seconds));
+    auto result = service.get(id);
+    service.watch(std::chrono::seconds(seconds), [&] {
+      result = service.get(id);
+      const auto* status = std::get_if<api::RenderStatus>(&result);
+      return status == nullptr || api::is_end(status->state);
+    });
     if (auto* problem = std::get_if<api::Problem>(&result)) {
       ADD_FAILURE() << to_text(*problem);
       return {};

@@ -106,11 +106,10 @@ TEST(JobServiceTest, WaitingEndsWithTheRenderWithTheTimeOrWithTheService) {
   const std::string soon = tested.submit(small_request(4)).id;
   EXPECT_EQ(tested.wait(soon).state, JobState::succeeded);
   renderer.milliseconds_per_pass = 60'000;
-  const std::string late = tested.submit(small_request(4)).id;
+  const std::string late = tested.submit(small_request(4, 2)).id;
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_FALSE(
-      is_end(std::get<api::RenderStatus>(tested.service.wait(late, std::chrono::milliseconds(100)))
-                 .state));
+  tested.service.watch(std::chrono::milliseconds(100), [] { return false; });
+  EXPECT_FALSE(is_end(tested.state(late)));
   EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(100));
   std::jthread stopper([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -132,7 +131,7 @@ TEST(JobServiceTest, AStoppedServiceGivesItsTasksBack) {
   tested.service.shut_down();
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
   EXPECT_EQ(tested.state(id), JobState::queued);
-  const std::optional<Task> task = tested.store.claim();
+  const std::optional<Task> task = tested.store.claim(Priority::interactive);
   ASSERT_TRUE(task);
   EXPECT_EQ(task->attempts, 1) << "a task that was given back was not attempted";
 }

@@ -48,7 +48,7 @@ TEST(JobStoreTest, ASubmittedJobIsQueuedUntilItsTaskIsClaimed) {
   const std::string id = submit(store);
   EXPECT_EQ(store.find(id)->state, JobState::queued);
   EXPECT_FALSE(store.find(id)->started_ms);
-  const std::optional<Task> task = store.claim();
+  const std::optional<Task> task = store.claim(Priority::interactive);
   ASSERT_TRUE(task);
   EXPECT_EQ(task->job_id, id);
   EXPECT_EQ(task->pass, (Pass{0, 0, 4}));
@@ -59,27 +59,27 @@ TEST(JobStoreTest, ASubmittedJobIsQueuedUntilItsTaskIsClaimed) {
 TEST(JobStoreTest, TheOldestJobIsClaimedFirstUnlessAnotherIsPreferred) {
   JobStore store(":memory:");
   const std::string first = submit(store), second = submit(store), third = submit(store);
-  EXPECT_EQ(store.claim(third)->job_id, third);
-  EXPECT_EQ(store.claim(third)->job_id, first);
-  EXPECT_EQ(store.claim()->job_id, second);
-  EXPECT_FALSE(store.claim());
+  EXPECT_EQ(store.claim(Priority::interactive, third)->job_id, third);
+  EXPECT_EQ(store.claim(Priority::interactive, third)->job_id, first);
+  EXPECT_EQ(store.claim(Priority::interactive)->job_id, second);
+  EXPECT_FALSE(store.claim(Priority::interactive));
 }
 
 TEST(JobStoreTest, ALeaseThatRanOutIsClaimedAgainAndItsFirstHolderIsRefused) {
   Timed timed;
   const std::string id = submit(timed.store);
-  const Task first = *timed.store.claim();
+  const Task first = *timed.store.claim(Priority::interactive);
   timed.now += 999;
-  EXPECT_FALSE(timed.store.claim());
+  EXPECT_FALSE(timed.store.claim(Priority::interactive));
   timed.now += 2;
-  const Task second = *timed.store.claim();
+  const Task second = *timed.store.claim(Priority::interactive);
   EXPECT_EQ(second.pass, first.pass);
   EXPECT_GT(second.fencing_token, first.fencing_token);
   EXPECT_EQ(second.attempts, 2);
 
   EXPECT_FALSE(timed.store.renew(first));
   EXPECT_FALSE(timed.store.complete(first, a_result(), {1, 4, 4}));
-  EXPECT_FALSE(timed.store.finish(first, a_result(), true, "{}", "x.exr"));
+  EXPECT_FALSE(timed.store.finish(first, a_result(), true, "{}", {}));
   EXPECT_FALSE(timed.store.fail(first, "{}"));
   EXPECT_FALSE(timed.store.release(first));
   EXPECT_EQ(timed.store.find(id)->progress.samples, 0u);
@@ -90,11 +90,11 @@ TEST(JobStoreTest, ALeaseThatRanOutIsClaimedAgainAndItsFirstHolderIsRefused) {
 TEST(JobStoreTest, ARenewedLeaseDoesNotRunOut) {
   Timed timed;
   submit(timed.store);
-  const Task task = *timed.store.claim();
+  const Task task = *timed.store.claim(Priority::interactive);
   for (int i = 0; i < 5; ++i) {
     timed.now += 900;
     EXPECT_TRUE(timed.store.renew(task));
-    EXPECT_FALSE(timed.store.claim());
+    EXPECT_FALSE(timed.store.claim(Priority::interactive));
   }
 }
 
@@ -104,19 +104,19 @@ TEST(JobStoreTest, AClockSetBackNeitherLosesNorDoublesTasks) {
   timed.now -= 500'000;
   const std::string second = submit(timed.store);
   EXPECT_LT(first, second);
-  EXPECT_EQ(timed.store.claim()->job_id, first);
-  EXPECT_EQ(timed.store.claim()->job_id, second);
-  EXPECT_FALSE(timed.store.claim());
+  EXPECT_EQ(timed.store.claim(Priority::interactive)->job_id, first);
+  EXPECT_EQ(timed.store.claim(Priority::interactive)->job_id, second);
+  EXPECT_FALSE(timed.store.claim(Priority::interactive));
 }
 
 TEST(JobStoreTest, CompletionStoresProgressAndPlansTheNextTask) {
   JobStore store(":memory:");
   const std::string id = submit(store);
-  EXPECT_TRUE(store.complete(*store.claim(), a_result(1.5), {1, 4, 8}));
+  EXPECT_TRUE(store.complete(*store.claim(Priority::interactive), a_result(1.5), {1, 4, 8}));
   EXPECT_EQ(store.find(id)->state, JobState::running);
   EXPECT_EQ(store.find(id)->progress.relative_error, 0.5);
   EXPECT_EQ(store.find(id)->progress.eta_seconds, 3);
-  const Task next = *store.claim();
+  const Task next = *store.claim(Priority::interactive);
   EXPECT_EQ(next.pass, (Pass{1, 4, 8}));
   EXPECT_TRUE(store.complete(next, a_result(2), {2, 12, 8}));
   EXPECT_DOUBLE_EQ(store.traced_seconds(id), 3.5);
@@ -125,45 +125,45 @@ TEST(JobStoreTest, CompletionStoresProgressAndPlansTheNextTask) {
 TEST(JobStoreTest, AResultThatComesTwiceCountsOnce) {
   JobStore store(":memory:");
   const std::string id = submit(store);
-  const Task task = *store.claim();
+  const Task task = *store.claim(Priority::interactive);
   EXPECT_TRUE(store.complete(task, a_result(), {1, 4, 4}));
   EXPECT_FALSE(store.complete(task, a_result(), {1, 4, 4}));
   EXPECT_DOUBLE_EQ(store.traced_seconds(id), 1);
-  EXPECT_TRUE(store.claim());
-  EXPECT_FALSE(store.claim());
+  EXPECT_TRUE(store.claim(Priority::interactive));
+  EXPECT_FALSE(store.claim(Priority::interactive));
 }
 
 TEST(JobStoreTest, AFinishedJobHasItsStatsAndNoMoreTasks) {
   JobStore store(":memory:");
   const std::string id = submit(store);
-  EXPECT_TRUE(store.finish(*store.claim(), a_result(), true, R"({"samples":4})", "image.exr"));
+  EXPECT_TRUE(
+      store.finish(*store.claim(Priority::interactive), a_result(), true, R"({"samples":4})", {}));
   const Job job = *store.find(id);
   EXPECT_EQ(job.state, JobState::succeeded);
   EXPECT_EQ(job.stats, R"({"samples":4})");
-  EXPECT_EQ(job.image, "image.exr");
   EXPECT_TRUE(job.finished_ms);
   EXPECT_FALSE(job.progress.eta_seconds);
-  EXPECT_FALSE(store.claim());
+  EXPECT_FALSE(store.claim(Priority::interactive));
 }
 
 TEST(JobStoreTest, ACanceledJobRefusesTheResultOfItsTask) {
   JobStore store(":memory:");
   const std::string id = submit(store);
-  const Task task = *store.claim();
+  const Task task = *store.claim(Priority::interactive);
   EXPECT_EQ(store.cancel(id)->state, JobState::canceled);
   EXPECT_FALSE(store.renew(task));
-  EXPECT_FALSE(store.finish(task, a_result(), true, "{}", "x.exr"));
+  EXPECT_FALSE(store.finish(task, a_result(), true, "{}", {}));
   EXPECT_EQ(store.find(id)->state, JobState::canceled);
-  EXPECT_FALSE(store.claim());
+  EXPECT_FALSE(store.claim(Priority::interactive));
 }
 
 TEST(JobStoreTest, AnEndedJobStaysAsItEnded) {
   JobStore store(":memory:");
   const std::string good = submit(store);
-  store.finish(*store.claim(), a_result(), true, "{}", "x.exr");
+  store.finish(*store.claim(Priority::interactive), a_result(), true, "{}", {});
   EXPECT_EQ(store.cancel(good)->state, JobState::succeeded);
   const std::string bad = submit(store);
-  store.fail(*store.claim(), R"({"title":"no"})");
+  store.fail(*store.claim(Priority::interactive), R"({"title":"no"})");
   EXPECT_EQ(store.cancel(bad)->state, JobState::failed);
   EXPECT_EQ(store.find(bad)->error, R"({"title":"no"})");
   EXPECT_FALSE(store.cancel("01ARZ3NDEKTSV4RRFFQ69G5FAV"));
@@ -172,14 +172,14 @@ TEST(JobStoreTest, AnEndedJobStaysAsItEnded) {
 TEST(JobStoreTest, AReleasedTaskWaitsForItsDelayAndCountsAsAnAttemptOnlyIfToldSo) {
   Timed timed;
   const std::string id = submit(timed.store);
-  EXPECT_TRUE(timed.store.release(*timed.store.claim()));
+  EXPECT_TRUE(timed.store.release(*timed.store.claim(Priority::interactive)));
   EXPECT_EQ(timed.store.find(id)->state, JobState::queued);
-  const Task again = *timed.store.claim();
+  const Task again = *timed.store.claim(Priority::interactive);
   EXPECT_EQ(again.attempts, 1);
   EXPECT_TRUE(timed.store.release(again, 200, true));
-  EXPECT_FALSE(timed.store.claim());
+  EXPECT_FALSE(timed.store.claim(Priority::interactive));
   timed.now += 200;
-  EXPECT_EQ(timed.store.claim()->attempts, 2);
+  EXPECT_EQ(timed.store.claim(Priority::interactive)->attempts, 2);
 }
 
 TEST(JobStoreTest, TheSameKeyAndRequestIsTheSameJobAndAnotherRequestIsRefused) {
@@ -202,7 +202,7 @@ TEST(JobStoreTest, ARemovedJobIsGoneWithItsTasksAndItsKey) {
   EXPECT_TRUE(store.remove(id));
   EXPECT_FALSE(store.remove(id));
   EXPECT_FALSE(store.find(id));
-  EXPECT_FALSE(store.claim());
+  EXPECT_FALSE(store.claim(Priority::interactive));
   EXPECT_TRUE(std::get<Submitted>(store.submit(a_job(R"({"other":1})", "key"))).created);
 }
 
@@ -229,15 +229,15 @@ TEST(JobStoreTest, AReopenedStoreFreesTheTasksThatTheDeadProcessHeld) {
   {
     JobStore store(folder / "jobs.sqlite");
     id = submit(store);
-    store.complete(*store.claim(), a_result(), {1, 4, 4});
-    task = store.claim();
+    store.complete(*store.claim(Priority::interactive), a_result(), {1, 4, 4});
+    task = store.claim(Priority::interactive);
   }
   JobStore store(folder / "jobs.sqlite");
   EXPECT_EQ(store.find(id)->state, JobState::queued);
   EXPECT_EQ(store.find(id)->progress.samples, 4u);
   EXPECT_DOUBLE_EQ(store.traced_seconds(id), 1);
   EXPECT_FALSE(store.complete(*task, a_result(), {2, 8, 4})) << "nobody holds it now";
-  const Task again = *store.claim();
+  const Task again = *store.claim(Priority::interactive);
   EXPECT_EQ(again.pass, task->pass);
   EXPECT_EQ(again.attempts, 2);
   EXPECT_LT(id, submit(store)) << "ids keep rising over a restart";
@@ -249,8 +249,8 @@ TEST(JobStoreTest, WhatWasAcceptedSurvivesAKill) {
   if (child == 0) {
     JobStore store(folder / "jobs.sqlite");
     for (int i = 0; i < 20; ++i) submit(store);
-    store.finish(*store.claim(), a_result(), true, "{}", "x.exr");
-    store.claim();
+    store.finish(*store.claim(Priority::interactive), a_result(), true, "{}", {});
+    store.claim(Priority::interactive);
     ::kill(::getpid(), SIGKILL);
   }
   int status = 0;
@@ -260,7 +260,7 @@ TEST(JobStoreTest, WhatWasAcceptedSurvivesAKill) {
   EXPECT_EQ(store.list({JobState::queued, {}, 100}).size(), 19u);
   EXPECT_EQ(store.list({JobState::succeeded, {}, 100}).size(), 1u);
   int claimable = 0;
-  while (store.claim()) ++claimable;
+  while (store.claim(Priority::interactive)) ++claimable;
   EXPECT_EQ(claimable, 19);
 }
 
@@ -341,8 +341,8 @@ TEST(JobStoreTest, ManyThreadsClaimEachTaskOnce) {
     std::vector<std::jthread> threads;
     for (int i = 0; i < 4; ++i)
       threads.emplace_back([&] {
-        while (const std::optional<Task> task = store.claim()) {
-          EXPECT_TRUE(store.finish(*task, a_result(), true, "{}", "x.exr"));
+        while (const std::optional<Task> task = store.claim(Priority::interactive)) {
+          EXPECT_TRUE(store.finish(*task, a_result(), true, "{}", {}));
           const std::lock_guard lock(mutex);
           claimed.insert(task->job_id);
         }

@@ -1,0 +1,81 @@
+#pragma once
+
+// The handlers behind the routes of endpoints.cpp, and what they share.
+
+#include <string>
+
+#include "server/endpoints.h"
+
+namespace translucube::server {
+
+/// What stands in a path in the places of "{id}" and "{point}".
+struct PathIds {
+  std::string id, point;
+};
+
+// render_endpoints.cpp
+HttpResponse post_render(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse list_renders(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse get_render(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse cancel_render(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse delete_render(Endpoints&, const HttpRequest&, const PathIds&);
+
+// sweep_endpoints.cpp
+HttpResponse post_sweep(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse list_sweeps(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse get_sweep(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse cancel_sweep(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse delete_sweep(Endpoints&, const HttpRequest&, const PathIds&);
+
+// image_endpoint.cpp: negotiated, tagged, whole or in part.
+HttpResponse get_image(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse get_point_image(Endpoints&, const HttpRequest&, const PathIds&);
+
+// event_endpoint.cpp
+HttpResponse get_render_events(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse get_sweep_events(Endpoints&, const HttpRequest&, const PathIds&);
+
+HttpResponse json_response(int status, std::string body);
+/// A JSON answer that a client can ask for again at the price of a header.
+HttpResponse tagged_json(const HttpRequest& request, std::string body);
+std::string entity_tag(const std::string& body);
+
+/// A body that must be JSON, and an Idempotency-Key: a problem, or the key if there is one.
+Result<std::optional<std::string>> submission_key(const HttpRequest& request);
+/// The query of a list: cursor, limit, status.
+Result<ListQuery> list_query(const HttpRequest& request);
+/// The query's `wait` [s], 0 where it is not there, 60 at most.
+Result<int> wait_query(const HttpRequest& request);
+
+/// One of a bounded number of places, given back at the end of its life.
+class Place {
+ public:
+  Place(std::atomic<int>& taken, int most) : taken_(taken), got_(++taken_ <= most) {}
+  ~Place() { --taken_; }
+  Place(const Place&) = delete;
+  Place& operator=(const Place&) = delete;
+  bool got() const { return got_; }
+
+ private:
+  std::atomic<int>& taken_;
+  bool got_;
+};
+
+/// What `get` answers, at once or when `done` is true of its status or the time is over. Without a
+/// place to wait, at once; `waited` then stays false.
+template <typename Get, typename Done>
+auto answer_after(Endpoints& endpoints, int seconds, bool& waited, Get get, Done done) {
+  auto result = get();
+  waited = false;
+  if (seconds <= 0) return result;
+  const Place place(endpoints.waiting, endpoints.catalog.server.waiting_requests);
+  if (!place.got()) return result;
+  waited = true;
+  endpoints.service.watch(std::chrono::seconds(seconds), [&] {
+    result = get();
+    return std::holds_alternative<api::Problem>(result) || done(std::get<0>(result));
+  });
+  return result;
+}
+
+}  // namespace translucube::server
