@@ -3,6 +3,7 @@
 // EXR files through OpenEXR itself, for image_io*.cpp alone: environments and films are EXR, and no
 // picture waits for more libraries than that.
 
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
@@ -29,8 +30,8 @@ void write_exr(const std::filesystem::path& file, const Image& image,
 void read_exr_file(const std::filesystem::path& file,
                    const std::function<void(Imf::InputFile&)>& read);
 
-/// A header for pixels that are compressed without loss.
-Imf::Header exr_header(int width, int height);
+/// A header that names this program.
+Imf::Header exr_header(int width, int height, Imf::Compression compression);
 
 /// Writes with `write`, which gets the open file, its header written. Throws ImageError.
 void write_exr_file(const std::filesystem::path& file, const Imf::Header& header,

@@ -105,9 +105,9 @@ void read_exr_file(const std::filesystem::path& file,
   }
 }
 
-Imf::Header exr_header(int width, int height) {
+Imf::Header exr_header(int width, int height, Imf::Compression compression) {
   Imf::Header header(width, height);
-  header.compression() = Imf::ZIP_COMPRESSION;
+  header.compression() = compression;
   header.insert("Software", Imf::StringAttribute("Translucube " TRANSLUCUBE_VERSION));
   return header;
 }

@@ -44,7 +44,7 @@ void write_half_image(const std::filesystem::path& file, const HalfImage& image,
   if (planes.empty() ||
       planes.size() != image.channels.size() * std::size_t(image.width) * image.height)
     fail_image(file, "planes of another size than the image");
-  Imf::Header header = exr_header(image.width, image.height);
+  Imf::Header header = exr_header(image.width, image.height, Imf::ZIP_COMPRESSION);
   for (const std::string& channel : image.channels)
     header.channels().insert(channel, Imf::Channel(Imf::HALF));
   for (const auto& [attribute, value] : image.attributes)
