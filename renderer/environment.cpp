@@ -15,27 +15,39 @@ constexpr int block_size = 16, cells_of_a_block = block_size * block_size;
 
 }  // namespace
 
+struct ImageEnvironment::Tables {
+  std::vector<Texel> texels;
+  std::vector<double> blocks;
+  std::vector<float> cells;
+};
+
 ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, double scale)
     : width_(image.width), height_(image.height), rotation_rad_(rotation_rad) {
-  texels_.resize(std::size_t(width_) * height_);
-  for (std::size_t i = 0; i < texels_.size(); ++i) {
+  const auto tables = std::make_shared<Tables>();
+  tables->texels.resize(std::size_t(width_) * height_);
+  for (std::size_t i = 0; i < tables->texels.size(); ++i) {
     const float* p = &image.pixels[3 * i];
     const auto s = static_cast<float>(scale);
-    texels_[i] = {p[0] * s, p[1] * s, p[2] * s, 0};
+    tables->texels[i] = {p[0] * s, p[1] * s, p[2] * s, 0};
   }
-  build_sampling();
+  build_sampling(*tables);
+  texels_ = tables->texels;
+  blocks_ = tables->blocks;
+  cells_ = tables->cells;
+  tables_ = tables;
   build_irradiance();
 }
 
-void ImageEnvironment::build_sampling() {
+void ImageEnvironment::build_sampling(Tables& tables) {
+  auto& [texels, blocks, cells] = tables;
   // The integral of the bilinear interpolant over a cell is its tent filter (1, 6, 1) / 8.
   std::vector<double> across;  // the filter along the rows
-  across.reserve(texels_.size());
+  across.reserve(texels.size());
   for (int y = 0; y < height_; ++y) {
     std::vector<double> row;
     row.reserve(width_ + 2);
     const auto add = [&](int x) {
-      const Texel& t = texels_[std::size_t(y) * width_ + x];
+      const Texel& t = texels[std::size_t(y) * width_ + x];
       // Photographs hold slightly negative pixels: they are light that must be found like any
       // other.
       row.push_back(static_cast<double>(std::fabs(luminance({t.r, t.g, t.b}))));
@@ -48,7 +60,7 @@ void ImageEnvironment::build_sampling() {
   const auto row = [&](int x, int y) {
     return across[std::size_t(std::clamp(y, 0, height_ - 1)) * width_ + x];
   };
-  const std::size_t n = texels_.size();
+  const std::size_t n = texels.size();
   std::vector<double> weight(n);
   double total = 0;
   for (int y = 0; y < height_; ++y) {
@@ -64,12 +76,12 @@ void ImageEnvironment::build_sampling() {
   }
   for (std::size_t i = 0; i < n; ++i) {
     weight[i] *= static_cast<double>(n) / total;
-    texels_[i].weight = static_cast<float>(weight[i]);
+    texels[i].weight = static_cast<float>(weight[i]);
   }
   blocks_across_ = (width_ + block_size - 1) / block_size;
   const int blocks_down = (height_ + block_size - 1) / block_size;
-  blocks_.reserve(std::size_t(blocks_across_) * blocks_down);
-  cells_.reserve(blocks_.capacity() * cells_of_a_block);
+  blocks.reserve(std::size_t(blocks_across_) * blocks_down);
+  cells.reserve(blocks.capacity() * cells_of_a_block);
   double all = 0;
   for (int by = 0; by < blocks_down; ++by)
     for (int bx = 0; bx < blocks_across_; ++bx) {
@@ -80,10 +92,10 @@ void ImageEnvironment::build_sampling() {
         if (x < width_ && y < height_) sum += weight[std::size_t(y) * width_ + x];
         sums[i] = sum;
       }
-      for (const double s : sums) cells_.push_back(sum > 0 ? static_cast<float>(s / sum) : 0);
-      blocks_.push_back(all += sum / static_cast<double>(n));
+      for (const double s : sums) cells.push_back(sum > 0 ? static_cast<float>(s / sum) : 0);
+      blocks.push_back(all += sum / static_cast<double>(n));
     }
-  for (double& sum : blocks_) sum /= all;
+  for (double& sum : blocks) sum /= all;
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <variant>
 #include <vector>
@@ -71,18 +72,20 @@ class ImageEnvironment {
   MapCoordinates coordinates(Vec3 direction) const;
   Rgb bilinear(float x, float y) const;
   double cell_pdf(int x, int y, double sin_theta) const;
-  void build_sampling();
+  struct Tables;
+  void build_sampling(Tables& tables);
   void build_irradiance();
 
   int width_, height_;
   double rotation_rad_;
-  std::vector<Texel> texels_;
+  std::span<const Texel> texels_;
   // The chances of the cells, block by block of the map and summed up: over the blocks, and within
   // each (row by row, 1 at its end).
   int blocks_across_ = 0;
-  std::vector<double> blocks_;
-  std::vector<float> cells_;
-  std::array<Rgb, 9> irradiance_;  ///< coefficients of the polynomials of quadratic_basis()
+  std::span<const double> blocks_;
+  std::span<const float> cells_;
+  std::array<Rgb, 9> irradiance_;         ///< coefficients of the polynomials of quadratic_basis()
+  std::shared_ptr<const Tables> tables_;  ///< what the spans show: copies share it
 };
 
 using Environment = std::variant<UniformEnvironment, ImageEnvironment>;

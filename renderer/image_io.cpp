@@ -1,170 +1,30 @@
-// Pictures: R, G and B with their metadata.
-
 #include "renderer/image_io.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 
-#include "renderer/image_io_file.h"
+#include "renderer/image_codecs.h"
+#include "renderer/image_io_exr.h"
+#include "renderer/image_io_rules.h"
 
 namespace translucube {
-namespace {
-
-/// A JPEG segment ends at 64 KiB, where libjpeg calls exit(), and OIIO reads a TIFF description
-/// only that far: a longer request is left out of these two. (EXIF and IPTC need some room of it.)
-constexpr std::size_t max_description_bytes = 60000;
-/// Past it libjpeg calls exit() too (JPEG_MAX_DIMENSION).
-constexpr int max_jpeg_side = 65500;
-
-constexpr const char* request_attribute = "translucube:request";
-constexpr const char* colorspace_attribute = "translucube:colorspace";
-/// Of PNG, TIFF and JPEG only "ImageDescription" and "Software" survive in all three.
-constexpr std::string_view software = "Translucube " TRANSLUCUBE_VERSION ", pixels in ";
-
-ImageMetadata metadata_of(const OIIO::ImageSpec& spec) {
-  ImageMetadata metadata{.request = spec.get_string_attribute(request_attribute),
-                         .colorspace = spec.get_string_attribute(colorspace_attribute)};
-  const std::string_view writer = spec.get_string_attribute("Software");
-  if (metadata.colorspace.empty() && writer.starts_with(software)) {
-    metadata.colorspace = writer.substr(software.size());
-    metadata.request = spec.get_string_attribute("ImageDescription");
-  }
-  return metadata;
-}
-
-/// The sRGB decoding (IEC 61966-2-1).
-float srgb_to_linear(float v) {
-  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-}
-
-bool is_srgb(const std::string& colorspace) {
-  return colorspace.starts_with("sRGB/") && colorspace != "sRGB/raw";
-}
-
-/// Undoes the transfer curve that the file names. OpenImageIO names sRGB for PNG and JPEG that say
-/// nothing, and none for EXR, HDR and untagged TIFF; our own files say more than it can.
-void linearize(Image& image, const OIIO::ImageSpec& spec) {
-  const std::string written = metadata_of(spec).colorspace;
-  const std::string space = spec.get_string_attribute("oiio:ColorSpace");
-  const float gamma = spec.get_float_attribute("oiio:Gamma", 1.0f);
-  if (written.empty() ? space == "sRGB" : is_srgb(written)) {
-    for (float& v : image.pixels) v = srgb_to_linear(v);
-  } else if (written.empty() && space.starts_with("Gamma") && gamma > 0.0f && gamma != 1.0f) {
-    for (float& v : image.pixels) v = std::copysign(std::pow(std::abs(v), gamma), v);
-  }
-}
-
-int channel_index(const OIIO::ImageSpec& spec, char wanted) {
-  for (int c = 0; c < spec.nchannels; ++c) {
-    const std::string& channel = spec.channelnames[c];
-    if (channel.size() == 1 && std::toupper(static_cast<unsigned char>(channel[0])) == wanted)
-      return c;
-  }
-  return -1;
-}
-
-/// Where R, G and B are stored: three times the first channel for grey, with or without alpha.
-std::array<int, 3> color_channels(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
-  const std::array<int, 3> rgb = {channel_index(spec, 'R'), channel_index(spec, 'G'),
-                                  channel_index(spec, 'B')};
-  if (rgb[0] >= 0 && rgb[1] >= 0 && rgb[2] >= 0) return rgb;
-  if (spec.nchannels <= 2) {
-    const int grey = spec.alpha_channel == 0 && spec.nchannels == 2 ? 1 : 0;
-    return {grey, grey, grey};
-  }
-  fail_image(file, "no channels named R, G and B");
-}
-
-void set_colorspace(OIIO::ImageSpec& spec, ImageFormat format, const std::string& colorspace) {
-  if (format != ImageFormat::exr) {
-    // Only what is true: no other display of config/display.ocio has a tag in OpenImageIO. Not in
-    // TIFF: the tag is EXIF there, and OpenImageIO 2.4 spoils the file with it where it writes
-    // through an IOProxy (its pull request 4300).
-    if (is_srgb(colorspace) && format != ImageFormat::tiff)
-      spec.attribute("oiio:ColorSpace", "sRGB");
-    return;
-  }
-  // Red, green, blue and white xy, as OpenEXR's standard attribute has them.
-  std::array<float, 8> xy = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
-  if (colorspace == "ACEScg")  // AP1 and the ACES white (S-2014-004)
-    xy = {0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f};
-  else if (colorspace == "XYZ")
-    xy = {1.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 1.0f / 3.0f, 1.0f / 3.0f};
-  else if (colorspace != "lin_rec709")
-    return;
-  spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy.data());
-  spec.attribute("oiio:ColorSpace", "Linear");
-}
-
-void set_metadata(OIIO::ImageSpec& spec, ImageFormat format, const ImageMetadata& metadata) {
-  if (format == ImageFormat::exr) {
-    spec.attribute(request_attribute, metadata.request);
-    spec.attribute(colorspace_attribute, metadata.colorspace);
-    spec.attribute("Software", "Translucube " TRANSLUCUBE_VERSION);
-  } else {
-    const bool room =
-        format == ImageFormat::png || metadata.request.size() <= max_description_bytes;
-    if (room && !metadata.request.empty())  // an empty one trips an assertion of its IPTC writer
-      spec.attribute("ImageDescription", metadata.request);
-    spec.attribute("Software", std::string(software) + metadata.colorspace);
-  }
-  // OpenImageIO would write the time of day: the same picture has the same bytes.
-  spec.attribute("DateTime", "");
-}
-
-OIIO::ImageSpec output_spec(const Image& image, ImageFormat format, const ImageMetadata& metadata) {
-  OIIO::TypeDesc type = OIIO::TypeDesc::UINT16;
-  if (format == ImageFormat::exr) type = OIIO::TypeDesc::FLOAT;
-  if (format == ImageFormat::jpeg) type = OIIO::TypeDesc::UINT8;
-  OIIO::ImageSpec spec(image.width, image.height, 3, type);
-  spec.attribute("compression", format == ImageFormat::jpeg ? "jpeg:95" : "zip");
-  spec.attribute("jpeg:subsampling", "4:4:4");
-  set_colorspace(spec, format, metadata.colorspace);
-  set_metadata(spec, format, metadata);
-  return spec;
-}
-
-}  // namespace
 
 Image read_image(const std::filesystem::path& file) {
-  const auto input = open_image(file);
-  const OIIO::ImageSpec spec = input->spec();
-  if (spec.deep || spec.depth > 1) fail_image(file, "a deep or volume image, not a flat one");
-  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) fail_image(file, "has no pixels");
-  if (std::int64_t{spec.width} * spec.height > max_pixels)
-    fail_image(file, std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                         " pixels, more than 2^28");
-
-  const std::array<int, 3> channels = color_channels(file, spec);
-  const int first = *std::min_element(channels.begin(), channels.end());
-  const int count = *std::max_element(channels.begin(), channels.end()) + 1 - first;
-  Image image(spec.width, spec.height);
-  const std::array<int, 3> in_order = {first, first + 1, first + 2};
-  const bool direct = channels == in_order;
-  std::vector<float> stored;
-  if (!direct) stored.resize(std::size_t(count) * spec.width * spec.height);
-  if (!input->read_image(0, 0, first, first + count, OIIO::TypeDesc::FLOAT,
-                         direct ? image.pixels.data() : stored.data()))
-    fail_image(file, "cannot be read (" + input->geterror() + ")");
-  if (!direct)
-    for (std::size_t i = 0; i < image.pixels.size() / 3; ++i)
-      for (int c = 0; c < 3; ++c)
-        image.pixels[3 * i + c] = stored[count * i + (channels[c] - first)];
-
-  for (std::size_t i = 0; i < image.pixels.size(); ++i)
-    if (!std::isfinite(image.pixels[i])) {
-      const std::size_t pixel = i / 3, width = image.width;
-      fail_image(file, "not finite at pixel (" + std::to_string(pixel % width) + ", " +
-                           std::to_string(pixel / width) + ")");
-    }
-  linearize(image, spec);
+  check_regular_file(file);
+  Image image = is_exr(file) ? read_exr(file) : image_codecs().read(file);
+  const auto bad =
+      std::ranges::find_if(image.pixels, [](float value) { return !std::isfinite(value); });
+  if (bad != image.pixels.end()) {
+    const auto pixel = (bad - image.pixels.begin()) / 3;
+    fail_image(file, "not finite at pixel (" + std::to_string(pixel % image.width) + ", " +
+                         std::to_string(pixel / image.width) + ")");
+  }
   return image;
 }
 
 ImageMetadata read_metadata(const std::filesystem::path& file) {
-  return metadata_of(open_image(file)->spec());
+  check_regular_file(file);
+  return is_exr(file) ? read_exr_metadata(file) : image_codecs().read_metadata(file);
 }
 
 void write_image(const std::filesystem::path& file, const Image& image, ImageFormat format,
@@ -172,13 +32,10 @@ void write_image(const std::filesystem::path& file, const Image& image, ImageFor
   if (image.width <= 0 || image.height <= 0 ||
       image.pixels.size() != std::size_t{3} * image.width * image.height)
     fail_image(file, "an image without pixels cannot be written");
-  if (format == ImageFormat::jpeg && std::max(image.width, image.height) > max_jpeg_side)
-    fail_image(file, "JPEG cannot be wider or higher than 65500 pixels");
-
-  write_image_file(file, format, output_spec(image, format, metadata),
-                   [&](OIIO::ImageOutput& output) {
-                     return output.write_image(OIIO::TypeDesc::FLOAT, image.pixels.data());
-                   });
+  if (format == ImageFormat::exr)
+    write_exr(file, image, metadata);
+  else
+    image_codecs().write(file, image, format, metadata);
 }
 
 }  // namespace translucube

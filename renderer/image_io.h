@@ -1,6 +1,7 @@
 #pragma once
 
-// The only door to image files; image_io*.cpp are the only files that include OpenImageIO.
+// The only door to image files: EXR through OpenEXR, which image_io_exr* alone include, all others
+// through OpenImageIO, in a module (image_codecs.h).
 
 #include <cstdint>
 #include <filesystem>
@@ -24,6 +25,10 @@ std::optional<ImageFormat> image_format(std::string_view name_or_extension);  //
 struct ImageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// Begins to load what files other than EXR need, 0.3 s, on a thread of its own: for those who will
+/// read or write one soon. Nothing else has to call it.
+void prepare_image_codecs();
 
 /// What a picture carries beside its pixels.
 struct ImageMetadata {

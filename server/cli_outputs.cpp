@@ -31,6 +31,7 @@ std::vector<Output> checked_outputs(const std::vector<fs::path>& files,
     check_output_place(file);
     ImageQuery query{*format, {}, {}, {}};
     if (*format != ImageFormat::exr) {
+      prepare_image_codecs();
       for_display = true;
       query.display = display;
       query.view = view;

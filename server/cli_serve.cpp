@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "renderer/image_io.h"
 #include "server/cli.h"
 #include "server/data_folder.h"
 #include "server/routes.h"
@@ -57,6 +58,7 @@ class Watchdog {
 };
 
 int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
+  prepare_image_codecs();
   const api::Catalog catalog = configured(options);
   const ColorConfig colors(catalog.display_config);
   const DataFolder folder(catalog.server.data_folder);

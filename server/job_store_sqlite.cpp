@@ -2,6 +2,8 @@
 
 #include <sqlite3.h>
 
+#include <cstdlib>
+
 #include "server/job_store.h"
 
 namespace translucube::server::sql {
@@ -102,6 +104,17 @@ std::optional<std::int64_t> Statement::optional_integer(int column) const {
 }
 std::optional<double> Statement::optional_real(int column) const {
   return is_null(column) ? std::nullopt : std::optional(real(column));
+}
+
+UnsyncedCommits::UnsyncedCommits(Connection& connection) : connection_(connection) {
+  connection_.execute("PRAGMA synchronous = NORMAL");
+}
+
+UnsyncedCommits::~UnsyncedCommits() {
+  const int code =
+      sqlite3_exec(connection_.handle(), "PRAGMA synchronous = FULL", nullptr, nullptr, nullptr);
+  // No promise may be made on such a connection; the store survives the end of the process.
+  if (code != SQLITE_OK) std::abort();
 }
 
 Transaction::Transaction(Connection& connection) : connection_(connection) {

@@ -83,6 +83,19 @@ class Statement {
   int next_parameter_ = 1;
 };
 
+/// While it lives, commits outlive the process but not a power cut, and wait for no disk. For what
+/// was promised to nobody; made outside of a transaction.
+class UnsyncedCommits {
+ public:
+  explicit UnsyncedCommits(Connection& connection);
+  ~UnsyncedCommits();
+  UnsyncedCommits(const UnsyncedCommits&) = delete;
+  UnsyncedCommits& operator=(const UnsyncedCommits&) = delete;
+
+ private:
+  Connection& connection_;
+};
+
 /// A write transaction: rolled back unless committed.
 class Transaction {
  public:

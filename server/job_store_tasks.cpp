@@ -58,6 +58,8 @@ RETURNING job_id, pass_index, first_sample, sample_count, fencing_token, attempt
 
 std::optional<Task> JobStore::claim(Priority priority, const std::string& preferred) {
   const Lock lock(writer_->mutex);
+  // A claim that is lost to a power cut is made again: nobody was promised anything.
+  const sql::UnsyncedCommits unsynced(*writer_);
   Transaction transaction(*writer_);
   std::optional<Task> task;
   if (!preferred.empty()) task = claim_one(priority, preferred);

@@ -4,7 +4,6 @@
 #include <signal.h>
 
 #include <cstdlib>
-#include <ctime>
 
 namespace translucube::server {
 
@@ -15,14 +14,20 @@ SignalWatch::SignalWatch(std::function<void(int signal)> on_signal) {
   sigaddset(&set, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   thread_ = std::jthread([set, on_signal = std::move(on_signal)](std::stop_token ended) {
-    const timespec poll{0, 100'000'000};
-    for (int seen = 0; !ended.stop_requested();) {
-      const int signal = sigtimedwait(&set, nullptr, &poll);
-      if (signal <= 0) continue;
+    for (int seen = 0;;) {
+      int signal = 0;
+      sigwait(&set, &signal);
+      if (ended.stop_requested()) return;
       if (++seen > 1) std::_Exit(128 + signal);
       on_signal(signal);
     }
   });
+}
+
+SignalWatch::~SignalWatch() {
+  thread_.request_stop();
+  // To that thread alone, which waits for nothing else.
+  pthread_kill(thread_.native_handle(), SIGTERM);
 }
 
 }  // namespace translucube::server

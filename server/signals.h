@@ -11,6 +11,9 @@ namespace translucube::server {
 class SignalWatch {
  public:
   explicit SignalWatch(std::function<void(int signal)> on_signal);
+  ~SignalWatch();
+  SignalWatch(const SignalWatch&) = delete;
+  SignalWatch& operator=(const SignalWatch&) = delete;
 
  private:
   std::jthread thread_;

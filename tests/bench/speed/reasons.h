@@ -45,12 +45,11 @@ inline constexpr Reason reasons[] = {
     {"service",
      "Four samples of 256 x 256 pixels on two cores allow 610 ns a sample for everything; "
      "scattering "
-     "bodies take 2000. The walk is not in SIMD yet. Of A0's time two thirds are not the trace but "
-     "the way there and back: the job's record, the picture's encoding, the poll."},
+     "bodies take 2000. The walk is not in SIMD yet. What is not the trace: two syncs of the job's "
+     "record and two of the picture, which were promised, and 5 ms of work."},
     {"process",
-     "The dynamic linker: OpenImageIO draws in 260 shared libraries, 0.2 s for an empty program "
-     "that "
-     "links it. OpenImageIO as a module that is loaded where a file needs it would mend that."},
+     "40 ms of work, half of it the environment's file and its tables; the rest is waiting for the "
+     "disk and for other processes."},
     {"stopping",
      "Pixels that rare light reaches are told too late; the worst are rough bodies at few "
      "samples."},

@@ -1,37 +1,16 @@
-#include "renderer/image_io_file.h"
+#include "renderer/oiio/file.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <mutex>
 
 namespace translucube {
 namespace {
-
-struct FormatInfo {
-  ImageFormat format;
-  const char* name;
-  const char* mime_type;
-  std::array<const char*, 2> extensions;
-};
-
-constexpr std::array<FormatInfo, 4> formats = {{
-    {ImageFormat::png, "png", "image/png", {"png", "png"}},
-    {ImageFormat::exr, "exr", "image/x-exr", {"exr", "openexr"}},
-    {ImageFormat::tiff, "tiff", "image/tiff", {"tiff", "tif"}},
-    {ImageFormat::jpeg, "jpeg", "image/jpeg", {"jpeg", "jpg"}},
-}};
-
-const FormatInfo& info(ImageFormat format) {
-  return *std::find_if(formats.begin(), formats.end(),
-                       [&](const FormatInfo& f) { return f.format == format; });
-}
 
 /// The threads belong to the renders: OpenImageIO and OpenEXR decode on the calling one.
 void use_one_thread() {
@@ -95,34 +74,15 @@ class FileSink final : public OIIO::Filesystem::IOProxy {
 
 }  // namespace
 
-std::string_view name(ImageFormat format) { return info(format).name; }
-
-std::string_view mime_type(ImageFormat format) { return info(format).mime_type; }
-
-std::optional<ImageFormat> image_format(std::string_view name_or_extension) {
-  if (name_or_extension.starts_with('.')) name_or_extension.remove_prefix(1);
-  std::string lower(name_or_extension);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  for (const FormatInfo& f : formats)
-    if (lower == f.extensions[0] || lower == f.extensions[1]) return f.format;
-  return std::nullopt;
-}
-
-void fail_image(const std::filesystem::path& file, const std::string& why) {
-  throw ImageError(file.string() + ": " + why);
-}
-
 std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file) {
   use_one_thread();
   // OpenImageIO has readers that need no file (names that end in ".null"): ask for a real one.
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    fail_image(file, error ? error.message() : "not a regular file");
+  check_regular_file(file);
   if (auto input = OIIO::ImageInput::open(file.string())) return input;
   const std::string problem = OIIO::geterror();
   // A stored artifact or a download may have no extension to go by.
-  for (const FormatInfo& f : formats) {
-    auto input = OIIO::ImageInput::create(f.name);
+  for (const ImageFormat format : {ImageFormat::png, ImageFormat::tiff, ImageFormat::jpeg}) {
+    auto input = OIIO::ImageInput::create(std::string(name(format)));
     OIIO::ImageSpec spec;
     if (input && input->open(file.string(), spec)) return input;
   }
@@ -136,9 +96,9 @@ void write_image_file(const std::filesystem::path& file, ImageFormat format,
   use_one_thread();
   FileSink sink(file);
   if (!sink.opened()) fail_image(file, std::strerror(sink.finish()));
-  auto output = OIIO::ImageOutput::create(info(format).name);
+  auto output = OIIO::ImageOutput::create(std::string(name(format)));
   if (!output || !output->set_ioproxy(&sink))
-    fail_image(file, "this OpenImageIO cannot write " + std::string(info(format).name));
+    fail_image(file, "this OpenImageIO cannot write " + std::string(name(format)));
   const bool written = output->open(file.string(), spec) && write(*output) && output->close();
   const std::string problem = output->geterror();
   output.reset();  // before the sink that it writes to

@@ -1,7 +1,6 @@
 #pragma once
 
-// Image files as OpenImageIO 2.4 opens and writes them, for image_io*.cpp alone: no other file may
-// include it.
+// Image files as OpenImageIO 2.4 opens and writes them, for the files of this folder alone.
 
 #include <OpenImageIO/imageio.h>
 
@@ -10,13 +9,9 @@
 #include <memory>
 #include <string>
 
-#include "renderer/image_io.h"
+#include "renderer/image_io_rules.h"
 
 namespace translucube {
-
-inline constexpr std::int64_t max_pixels = std::int64_t{1} << 28;
-
-[[noreturn]] void fail_image(const std::filesystem::path& file, const std::string& why);
 
 /// Throws ImageError.
 std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file);
