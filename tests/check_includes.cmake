@@ -11,15 +11,17 @@ set(forbidden_server "^(embree[0-9]*|OpenImageIO|OpenColorIO)/")
 
 # Doors: the header, and the file that may include it, or the files of that name (a regular
 # expression).
-set(doors Embree OpenImageIO OpenColorIO httplib SQLite)
+set(doors Embree OpenImageIO OpenColorIO FreeType httplib SQLite)
 set(header_Embree "^embree[0-9]*/")
 set(header_OpenImageIO "^OpenImageIO/|^renderer/image_io_file\\.h$")
 set(header_OpenColorIO "^OpenColorIO/")
+set(header_FreeType "^ft2build\\.h$|^freetype/|^FT_[A-Z_]+_H$")
 set(header_httplib "^httplib\\.h$")
 set(header_SQLite "^sqlite3\\.h$")
 set(door_Embree "renderer/intersect.cpp")
 set(door_OpenImageIO "renderer/image_io(_[a-z]+)?.(cpp|h)")
 set(door_OpenColorIO "renderer/color.cpp")
+set(door_FreeType "renderer/text.cpp")
 set(door_httplib "server/routes.cpp")
 set(door_SQLite "server/job_store_sqlite.cpp")
 
