@@ -11,7 +11,7 @@ namespace translucube {
 
 namespace {
 
-constexpr float background_code = 0.25f, frame_code = 0.42f, ink_code = 0.92f;
+constexpr float background_code = 0.25f, frame_code = 0.5f, ink_code = 0.92f;
 
 /// sRGB, IEC 61966-2-1.
 float decoded(float code) { return std::pow((code + 0.055f) / 1.055f, 2.4f); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
 
@@ -103,22 +104,33 @@ SheetLayout lay_out(const SheetSpec& spec, const Texts& texts, const Panel& pane
   return layout;
 }
 
-/// Throws std::invalid_argument, or SheetError where a pixel for each picture is too much: what
-/// passes is small enough to calculate with.
+[[noreturn]] void refuse_size(const SheetSpec& spec) {
+  std::string counts;
+  for (const SheetAxis& axis : spec.axes)
+    counts += (counts.empty() ? "" : " x ") + std::to_string(axis.labels.size());
+  throw SheetError("a contact sheet of " + counts +
+                   " cells would be larger than 16384 x 16384 or " +
+                   std::to_string(spec.max_pixels) + " pixels even with cells of 32 pixels");
+}
+
+/// Throws std::invalid_argument, and SheetError where not even the texts have room: what passes is
+/// small enough to try.
 void check(const SheetSpec& spec) {
   if (spec.picture_width < 1 || spec.picture_height < 1 || spec.cell_size < 1 ||
       spec.max_pixels < 1)
     throw std::invalid_argument("the sizes of a contact sheet must be positive");
+  constexpr std::int64_t least_side = 10;  // of a cell, pixels: the smallest text
+  const std::int64_t most_cells =
+      std::min(spec.max_pixels, max_side * max_side) / (least_side * least_side);
   std::int64_t cells = 1;
   for (const SheetAxis& axis : spec.axes) {
     if (axis.labels.empty())
       throw std::invalid_argument("an axis of a contact sheet has no values: \"" + axis.title +
                                   "\"");
-    cells =
-        axis.labels.size() > max_side ? max_side * max_side + 1 : cells * std::ssize(axis.labels);
-    if (cells > max_side * max_side)
-      throw SheetError("a contact sheet has no room for a cell of each of so many points");
+    if (std::ssize(axis.labels) > most_cells / cells) refuse_size(spec);
+    cells *= std::ssize(axis.labels);
   }
+  if (std::max(count(spec, columns), count(spec, rows)) > max_side / least_side) refuse_size(spec);
 }
 
 }  // namespace
@@ -144,17 +156,14 @@ SheetLayout lay_out_sheet(const SheetSpec& spec, const Font& font) {
   check(spec);
   const Texts texts(spec, font);
   const int longer = std::max(spec.picture_width, spec.picture_height);
-  int cell_size = std::min({std::max(spec.cell_size, min_cell), longer, max_side});
+  int cell_size = static_cast<int>(
+      std::min<std::int64_t>({std::max(spec.cell_size, min_cell), longer, max_side}));
   for (; cell_size >= std::min(longer, min_cell); --cell_size) {
     const Panel panel(spec, texts, font, cell_size);
     if (const auto arrangement = best_arrangement(spec, texts, panel))
       return lay_out(spec, texts, panel, *arrangement, font);
   }
-  const auto text = [&](int axis) { return std::to_string(count(spec, axis)); };
-  throw SheetError("a contact sheet of " + text(columns) + " x " + text(rows) + " cells in " +
-                   std::to_string(count(spec, panels) * count(spec, groups)) +
-                   " panels is larger than 16384 x 16384 or " + std::to_string(spec.max_pixels) +
-                   " pixels even with cells of 32 pixels");
+  refuse_size(spec);
 }
 
 }  // namespace translucube

@@ -34,10 +34,11 @@ bool fits(const Arrangement& sheet, std::int64_t max_pixels) {
          sheet.width * sheet.height <= max_pixels;
 }
 
-/// 0 for a landscape of 3 : 2 with no empty places.
+/// 0 for a landscape of 3 : 2 with no empty places. Three panels are better in a row than in a
+/// square with a hole, five are not.
 double ugliness(const Arrangement& sheet, int panel_count) {
   const double holes = double(sheet.per_row) * sheet.panel_rows / panel_count - 1;
-  return std::abs(std::log(double(sheet.width) / double(sheet.height) / 1.5)) + holes;
+  return std::abs(std::log(double(sheet.width) / double(sheet.height) / 1.5)) + 3 * holes;
 }
 
 }  // namespace
@@ -81,7 +82,7 @@ std::vector<std::vector<std::size_t>> Texts::title_lines(int size, int width) co
 Panel::Panel(const SheetSpec& spec, const Texts& texts, const Font& font, int cell_size) {
   const double scale =
       std::min(1.0, double(cell_size) / std::max(spec.picture_width, spec.picture_height));
-  text = static_cast<int>(std::clamp(std::lround(cell_size / 13.0), 10L, 20L));
+  text = static_cast<int>(std::clamp(std::lround(cell_size / 11.0), 10L, 20L));
   heading = static_cast<int>(std::lround(1.2 * text));
   line = font.line_height(text);
   heading_line = font.line_height(heading);
@@ -128,13 +129,13 @@ Arrangement::Arrangement(const SheetSpec& spec, const Texts& texts, const Panel&
   for (const double fact : texts.fact_widths)
     width =
         std::max<std::int64_t>(width, Font::width(std::min(fact, widest_heading), panel.heading));
-  const int title_width = static_cast<int>(std::min<std::int64_t>(width, max_side));
+  const int title_width = static_cast<int>(std::min(width, max_side));
   const int lines = static_cast<int>(texts.title_lines(panel.heading, title_width).size());
   title_height = lines == 0 ? 0 : lines * panel.heading_line + panel.text;
   height =
       std::int64_t{panel_rows} * (panel.height + panel.gutter()) - panel.gutter() + title_height;
-  width += 2 * panel.margin();
-  height += 2 * panel.margin();
+  width += std::int64_t{2} * panel.margin();
+  height += std::int64_t{2} * panel.margin();
 }
 
 std::optional<Arrangement> best_arrangement(const SheetSpec& spec, const Texts& texts,
@@ -142,7 +143,7 @@ std::optional<Arrangement> best_arrangement(const SheetSpec& spec, const Texts& 
   const int panel_count = count(spec, panels) * count(spec, groups);
   const int most = groups_start_rows(spec) ? count(spec, panels) : panel_count;
   std::optional<Arrangement> best;
-  for (int per_row = 1; per_row <= std::min(most, max_side / panel.width); ++per_row) {
+  for (int per_row = 1; per_row <= most && per_row <= max_side / panel.width; ++per_row) {
     const Arrangement tried(spec, texts, panel, per_row);
     if (fits(tried, spec.max_pixels) &&
         (!best || ugliness(tried, panel_count) < ugliness(*best, panel_count)))

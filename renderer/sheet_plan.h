@@ -13,7 +13,7 @@
 
 namespace translucube::sheet {
 
-constexpr int max_side = 16384;  ///< of a sheet, pixels
+constexpr std::int64_t max_side = 16384;  ///< of a sheet, pixels
 constexpr std::string_view separator = "  \u00b7  ";
 
 // The axes of a spec.

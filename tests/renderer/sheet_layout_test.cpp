@@ -162,6 +162,8 @@ TEST_F(SheetLayoutTest, PanelsWrapAndGroupsStartRows) {
   const SheetLayout wrapped = lay_out(sweep({5, 5, 6, 1}));
   EXPECT_EQ(wrapped.cell({0, 0, 0, 0}).y, wrapped.cell({0, 0, 2, 0}).y);
   EXPECT_LT(wrapped.cell({0, 0, 0, 0}).y, wrapped.cell({0, 0, 3, 0}).y);
+  const SheetLayout row = lay_out(sweep({5, 5, 3, 1}));
+  EXPECT_EQ(row.cell({0, 0, 0, 0}).y, row.cell({0, 0, 2, 0}).y);
   const SheetLayout grouped = lay_out(sweep({5, 5, 3, 2}));
   EXPECT_EQ(grouped.cell({0, 0, 0, 0}).x, grouped.cell({0, 0, 0, 1}).x);
   EXPECT_LT(grouped.cell({0, 0, 2, 0}).y, grouped.cell({0, 0, 0, 1}).y);
@@ -181,13 +183,17 @@ TEST_F(SheetLayoutTest, RefusesWhatDoesNotFit) {
   EXPECT_THROW(lay_out_sheet(sweep({600, 2, 1, 1}), font_), SheetError);
   EXPECT_THROW(lay_out_sheet(sweep({100000, 1, 1, 1}), font_), SheetError);
   EXPECT_THROW(lay_out_sheet(sweep({1000, 1000, 1000, 1}), font_), SheetError);
+  EXPECT_THROW(lay_out_sheet(sweep({1, 1, 600, 900}), font_), SheetError);
+  SheetSpec large = sweep({1000, 1, 1, 1}, 20000, 20000);
+  large.cell_size = 20000;
+  EXPECT_THROW(lay_out_sheet(large, font_), SheetError);
   SheetSpec small = sweep({5, 5, 1, 1});
   small.max_pixels = 160 * 160;
   try {
     lay_out_sheet(small, font_);
     FAIL();
   } catch (const SheetError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("5 x 5 cells in 1 panels"));
+    EXPECT_THAT(error.what(), HasSubstr("5 x 5 x 1 x 1 cells"));
     EXPECT_THAT(error.what(), HasSubstr("25600"));
   }
 }
