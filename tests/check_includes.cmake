@@ -11,17 +11,19 @@ set(forbidden_server "^(embree[0-9]*|OpenImageIO|OpenColorIO|OpenEXR|Imath)/")
 
 # Doors: the header, and the file that may include it, or the files of that name (a regular
 # expression).
-set(doors Embree OpenEXR OpenImageIO OpenColorIO httplib SQLite)
+set(doors Embree OpenEXR OpenImageIO OpenColorIO FreeType httplib SQLite)
 set(header_Embree "^embree[0-9]*/")
 set(header_OpenEXR "^(OpenEXR|Imath)/|^renderer/image_io_exr\\.h$")
 set(header_OpenImageIO "^OpenImageIO/|^renderer/oiio/")
 set(header_OpenColorIO "^OpenColorIO/")
+set(header_FreeType "^ft2build\\.h$|^freetype/")
 set(header_httplib "^httplib\\.h$")
 set(header_SQLite "^sqlite3\\.h$")
 set(door_Embree "renderer/intersect.cpp")
 set(door_OpenEXR "renderer/image_io(_[a-z]+)*.(cpp|h)")
 set(door_OpenImageIO "renderer/oiio/[a-z]+.(cpp|h)")
 set(door_OpenColorIO "renderer/color.cpp")
+set(door_FreeType "renderer/text.cpp")
 set(door_httplib "server/routes.cpp")
 set(door_SQLite "server/job_store_sqlite.cpp")
 
