@@ -41,6 +41,9 @@ class SpectralLane {
   Rgb apply(Rgb radiance, double length) const {
     return apply_operator(table_.at(1 + sigma_a_peak_ * length), radiance);
   }
+  double sigma_a_peak() const { return sigma_a_peak_; }
+  /// Over 1 + sigma_a_peak l.
+  const ColorOperatorTable& table() const { return table_; }
 
  private:
   double sigma_a_peak_;

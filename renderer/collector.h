@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
 
+#include "renderer/contribution_batch.h"
 #include "renderer/path.h"
 #include "renderer/scene_data.h"
 #include "renderer/transport.h"
@@ -25,33 +25,23 @@ class Collector {
 
   /// `brought`: radiance that travelled `length` inside the body.
   void collect(std::uint32_t pixel_index, double length, std::uint32_t tint, Rgb brought) {
-    const std::size_t stride = std::size_t(3) * tile_.width * tile_.height;
-    float* pixel = &tile_.sum[std::size_t(3) * pixel_index];
+    batch_.push(pixel_index, length, tint, brought);
+    if (batch_.size == ContributionBatch::capacity) flush();
+  }
+
+  /// Develops what waits; to be called after the last path.
+  void flush() {
+    const std::size_t lane_floats = pixel_floats * tile_.width * tile_.height;
     if (scene_.spread) {
-      if (!std::isfinite(brought.r + brought.g + brought.b + static_cast<float>(length))) {
-        ++counters().nan_samples;
-        return;
+      counters().nan_samples += add_spread(*scene_.spread, batch_, tile_.sum.data(), lane_floats);
+    } else {
+      for (std::size_t lane = 0; lane < scene_.lanes.size(); ++lane) {
+        develop(scene_.lanes[lane], batch_, developed_);
+        if (!tints_.empty()) apply_tints(lane);
+        counters().nan_samples += add(batch_, developed_, &tile_.sum[lane * lane_floats]);
       }
-      const BinWeights spread = (*scene_.spread)(length);
-      pixel += spread.bin * stride;
-      for (const float share : spread.weights) {
-        pixel[0] += brought.r * share;
-        pixel[1] += brought.g * share;
-        pixel[2] += brought.b * share;
-        pixel += stride;
-      }
-      return;
     }
-    for (std::size_t i = 0; i < scene_.lanes.size(); ++i) {
-      Rgb developed = std::visit([&](const auto& lane) { return lane.apply(brought, length); },
-                                 scene_.lanes[i]);
-      if (tint > 0) developed = apply_operator(tints_[tint * scene_.lanes.size() + i], developed);
-      if (!std::isfinite(developed.r + developed.g + developed.b)) ++counters().nan_samples;
-      pixel[0] += developed.r;
-      pixel[1] += developed.g;
-      pixel[2] += developed.b;
-      pixel += stride;
-    }
+    batch_.size = 0;
   }
 
   /// Colours what the path brings from here on, for each lane (the dipole model).
@@ -81,9 +71,18 @@ class Collector {
   }
 
  private:
+  void apply_tints(std::size_t lane) {
+    for (std::size_t i = 0; i < batch_.size; ++i)
+      if (batch_.tint[i] > 0)
+        developed_.set(
+            i, apply_operator(tints_[batch_.tint[i] * scene_.lanes.size() + lane], developed_[i]));
+  }
+
   const Scene& scene_;
   Tile& tile_;
   std::string* log_;
+  ContributionBatch batch_;
+  DevelopedBatch developed_;
   std::vector<ColorOperator> tints_;  ///< lanes to a tint; the first changes nothing
 };
 

@@ -33,10 +33,11 @@ void store(const Tile& tile, PassFilm& film) {
   const std::size_t lane_size = std::size_t(3) * film.width * film.height;
   for (int lane = 0; lane < film.lanes; ++lane)
     for (int y = 0; y < tile.height; ++y) {
-      const float* from = &tile.sum[std::size_t(3) * tile.width * (lane * tile.height + y)];
+      const float* from = &tile.sum[pixel_floats * tile.width * (lane * tile.height + y)];
       float* to = &film.sum[lane * lane_size +
                             std::size_t(3) * ((tile.y0 + y) * std::size_t(film.width) + tile.x0)];
-      std::copy(from, from + std::size_t(3) * tile.width, to);
+      for (int x = 0; x < tile.width; ++x, from += pixel_floats, to += 3)
+        std::copy(from, from + 3, to);
     }
 }
 
@@ -83,7 +84,7 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
       tile.y0 = i / columns * tile_size;
       tile.width = std::min(tile_size, film.width - tile.x0);
       tile.height = std::min(tile_size, film.height - tile.y0);
-      tile.sum.assign(std::size_t(3) * tile.width * tile.height * film.lanes, 0.0f);
+      tile.sum.assign(pixel_floats * tile.width * tile.height * film.lanes, 0.0f);
       for (std::uint32_t s = 0; s < pass.count && !stop.stop_requested(); s += samples_at_once)
         trace_tile(scene, pass.index, s, std::min(samples_at_once, pass.count - s), tile);
       store(tile, film);
@@ -192,11 +193,11 @@ std::string explain_sample(const Scene& scene, int x, int y, std::uint32_t sampl
   tile.x0 = x;
   tile.y0 = y;
   tile.width = tile.height = 1;
-  tile.sum.assign(std::size_t(3) * scene.film_lanes(), 0.0f);
+  tile.sum.assign(pixel_floats * scene.film_lanes(), 0.0f);
   std::string log;
   trace_tile(scene, pass.index, sample - pass.first_sample, 1, tile, &log);
   Rgb radiance;
-  for (std::size_t lane = 0; lane < (scene.spread ? tile.sum.size() : 3); lane += 3)
+  for (std::size_t lane = 0; lane < (scene.spread ? tile.sum.size() : 1); lane += pixel_floats)
     radiance += Rgb{tile.sum[lane], tile.sum[lane + 1], tile.sum[lane + 2]};
   char line[128];
   std::snprintf(line, sizeof line, "radiance (%.9g, %.9g, %.9g)\n", radiance.r, radiance.g,

@@ -80,6 +80,7 @@ class Tracer {
     }
     connector_.flush();
     collect_escapes();
+    collector_.flush();
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/contribution_batch.h"
 #include "renderer/film.h"
 #include "renderer/scene_data.h"
 
@@ -16,7 +17,7 @@ inline constexpr std::uint32_t samples_at_once = 4;
 struct Tile {
   std::uint32_t index = 0;  ///< of the image's tiles: seeds what the tile's paths share
   int x0 = 0, y0 = 0, width = 0, height = 0;
-  std::vector<float> sum;  ///< lanes x height x width x 3
+  std::vector<float> sum;  ///< lanes x height x width x pixel_floats
   TraceCounters counters;
 };
 

@@ -50,7 +50,7 @@ const std::vector<Part>& parts() {
         "Connect", "Densities"}},
       {"microfacets", {"Micro", "microsurface", "Ggx", "Collide", "::Start"}},
       {"walk", {"large_step", "cross_ball", "Walk", "Medium", "Sphere::"}},
-      {"collect", {"Collector", "merge", "Lane"}},
+      {"collect", {"Collector", "Contribution", "merge", "Lane"}},
       {"stages (inlined)", {"trace_body", "Tracer", "trace_pass", "trace_tile"}},
       {"sampling", {"Sampler", "sobol", "Rng"}},
       {"exp, log, sin, cos", {"exp", "log", "sin", "cos", "tan"}},

@@ -33,10 +33,6 @@ inline constexpr Reason reasons[] = {
     {"materials, C",
      "What the walk carries is itself noise where light is absorbed; the connections are at the "
      "limit that 8 or 32 lights a vertex would reach within 20 %."},
-    {"lanes",
-     "Each contribution is developed for each lane one by one, and the trace has become faster "
-     "than "
-     "that: three exponentials a lane, not yet in SIMD."},
     {"meshes, white",
      "A ray in a mesh costs 170 to 500 ns in Embree (two cache misses deep); a knot takes 13 of "
      "them "
