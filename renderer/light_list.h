@@ -9,9 +9,10 @@ namespace translucube {
 
 /// Directions drawn from the environment, from which the paths of a tile take their lights: drawing
 /// one for each path would cost more than using it. A new list for each few samples keeps the
-/// picture free of what one list lacks.
+/// picture free of what one list lacks; of 512 lights in place of 128 the drawing costs more than
+/// their error is worth (1.5 % of relMSE).
 struct LightList {
-  static constexpr std::uint32_t size = 512;  ///< a power of two
+  static constexpr std::uint32_t size = 128;  ///< a power of two
 
   LightList() = default;
   /// Empty where the environment is the same everywhere: there is nothing to look for.

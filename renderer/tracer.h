@@ -34,6 +34,8 @@ inline constexpr double roulette_of_scattered = 1.0 / 4;
 inline constexpr double roulette_of_rough = 1.0 / 8;
 /// Lights that a collision with a microfacet looks for.
 inline constexpr std::uint32_t lights_of_a_collision = 8;
+/// The same from outside where light goes on inside the body: what is reflected there is little.
+inline constexpr std::uint32_t lights_of_a_reflection = 2;
 /// Below this scattering coefficient [1 / unit] a walk is so short that a camera sample starts two.
 inline constexpr double short_walk_sigma_s = 2;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
