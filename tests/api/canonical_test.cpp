@@ -86,7 +86,7 @@ class RequestGenerator {
   Quality quality() {
     switch (random_() % 3) {
       case 0:
-        return SampleTarget{static_cast<std::uint32_t>(1 + random_() % 1048576)};
+        return SampleTarget{static_cast<std::uint32_t>(1 + random_() % 50000)};
       case 1:
         return ErrorTarget{uniform(1e-6, 1)};
       default:

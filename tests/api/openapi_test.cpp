@@ -137,8 +137,7 @@ TEST(OpenApi, AnswersHaveTheKeysOfTheirSchemas) {
 
 TEST(OpenApi, ProblemTypesAreThoseOfTheErrorTable) {
   std::set<std::string> described;
-  for (const json& type : schema("Problem")["properties"]["type"]["enum"])
-    described.insert(type);
+  for (const json& type : schema("Problem")["properties"]["type"]["enum"]) described.insert(type);
   std::set<std::string> table;
   for (int code = 0; code <= static_cast<int>(ProblemCode::internal); ++code)
     table.insert(kind(static_cast<ProblemCode>(code)).type);

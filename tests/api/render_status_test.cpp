@@ -59,8 +59,9 @@ TEST(RenderStatus, OfAQueuedRenderHasNulls) {
     "progress":{"samples":0,"total_samples":null,"relative_error":null,"seconds":0.0,
                 "eta_seconds":null},
     "request":{"seed":1},"material":{"albedo":0.5},"stats":null,"error":null,
+    "cached":false,
     "links":{"self":"/v1/renders/r1","image":"/v1/renders/r1/image",
-             "cancel":"/v1/renders/r1/cancel"}})"));
+             "events":"/v1/renders/r1/events","cancel":"/v1/renders/r1/cancel"}})"));
 }
 
 TEST(RenderStatus, OfARenderUnderWayHasItsProgress) {

@@ -159,6 +159,9 @@ class TestService {
     return std::get<ImageFile>(result).file->read_all();
   }
 
+  /// The folder of a render's picture.
+  std::string content(const std::string& id) { return store.pictures(id).at(0).content; }
+
   api::Catalog catalog;
   ColorConfig colors;
   DataFolder data;

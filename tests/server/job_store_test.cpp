@@ -20,7 +20,9 @@ using test::TempFolder;
 using testing::ElementsAre;
 
 NewJob a_job(const std::string& request = "{}", std::optional<std::string> key = {}) {
-  return {request, "{}", std::move(key), 64, Pass{0, 0, 4}};
+  static std::atomic<int> contents = 0;
+  return {request, "{}",          std::move(key),
+          64,      Pass{0, 0, 4}, "content-" + std::to_string(++contents)};
 }
 
 std::string submit(JobStore& store, const NewJob& job = a_job()) {
@@ -40,7 +42,9 @@ TaskResult a_result(double seconds = 1) {
 /// A store whose clock stands still until it is set.
 struct Timed {
   std::int64_t now = 1'000'000;
-  JobStore store{":memory:", {1000, [this] { return now; }}};
+  JobStore store{
+      ":memory:",
+      {.lease_ms = 1000, .clock = [this] { return now; }, .lease_clock = [this] { return now; }}};
 };
 
 TEST(JobStoreTest, ASubmittedJobIsQueuedUntilItsTaskIsClaimed) {

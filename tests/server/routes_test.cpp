@@ -241,7 +241,7 @@ TEST(RoutesTest, AFailureOfOursTellsNothingOfItself) {
   const auto posted = served.client.Post("/v1/renders", small_request(4), "application/json");
   const std::string location = posted->get_header_value("Location");
   // A store whose row is no JSON any more.
-  NewJob broken{"not json", "not json either", {}, 4, Pass{0, 0, 4}};
+  NewJob broken{"not json", "not json either", {}, 4, Pass{0, 0, 4}, "broken"};
   const auto submitted = std::get<Submitted>(served.service.store.submit(broken));
   const auto answer = served.client.Get("/v1/renders/" + submitted.job.id);
   EXPECT_EQ(answer->status, 500);
