@@ -40,7 +40,7 @@ function(expect_bad file content text)
 endfunction()
 
 write_good_tree()
-expect(good "10 files: includes point one way")
+expect(good "11 files: includes point one way")
 expect_bad(renderer/bad.cpp "\n\n[;]\n#include \"api/parse.h\"\n"
   "renderer/bad.cpp:4: renderer/ may not include api/parse.h")
 expect_bad(renderer/bad.h "#include <nlohmann/json.hpp>\n" "renderer/bad.h:1: renderer/ may not")
