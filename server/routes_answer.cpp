@@ -35,8 +35,9 @@ void put(FileSlice part, const HttpResponse& answer, const std::string& id,
 
 void put(EventStream stream, const std::string& id, const SocketServer& server,
          httplib::Response& response) {
-  response.set_header("Cache-Control", "no-store");
-  response.set_header("X-Accel-Buffering", "no");  // nginx would hold events back
+  if (!response.has_header("Cache-Control")) response.set_header("Cache-Control", "no-store");
+  // Else nginx would hold events back.
+  if (!response.has_header("X-Accel-Buffering")) response.set_header("X-Accel-Buffering", "no");
   response.set_chunked_content_provider(
       "text/event-stream",
       [stream = std::move(stream), id, &server, &connection = server.connection()](
