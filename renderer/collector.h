@@ -29,6 +29,17 @@ class Collector {
     if (batch_.size == ContributionBatch::capacity) flush();
   }
 
+  /// A control variate's part, of which each lane takes its own share: what is added here and taken
+  /// away there is nothing in the mean, whatever the share.
+  void collect_carried(std::uint32_t pixel_index, double length, std::uint32_t tint, Rgb brought) {
+    batch_.push(pixel_index, length, tint,
+                scene_.spread ? brought * share_of_absorbers_to_come : brought, true);
+    if (batch_.size == ContributionBatch::capacity) flush();
+  }
+  /// One for each lane; without them nothing may be carried.
+  void set_carried_shares(std::vector<float> shares) { carried_shares_ = std::move(shares); }
+  static constexpr float share_of_absorbers_to_come = 0.7f;
+
   /// Develops what waits; to be called after the last path.
   void flush() {
     const std::size_t lane_floats = pixel_floats * tile_.width * tile_.height;
@@ -38,6 +49,7 @@ class Collector {
       for (std::size_t lane = 0; lane < scene_.lanes.size(); ++lane) {
         develop(scene_.lanes[lane], batch_, developed_);
         if (!tints_.empty()) apply_tints(lane);
+        if (!carried_shares_.empty()) apply_share(carried_shares_[lane]);
         counters().nan_samples += add(batch_, developed_, &tile_.sum[lane * lane_floats]);
       }
     }
@@ -78,11 +90,20 @@ class Collector {
             i, apply_operator(tints_[batch_.tint[i] * scene_.lanes.size() + lane], developed_[i]));
   }
 
+  void apply_share(float share) {
+    for (std::size_t i = 0; i < batch_.size; ++i) {
+      const float factor = batch_.carried[i] ? share : 1;
+      for (std::size_t c = 0; c < pixel_floats; ++c)
+        developed_.light[pixel_floats * i + c] *= factor;
+    }
+  }
+
   const Scene& scene_;
   Tile& tile_;
   std::string* log_;
   ContributionBatch batch_;
   DevelopedBatch developed_;
+  std::vector<float> carried_shares_;
   std::vector<ColorOperator> tints_;  ///< lanes to a tint; the first changes nothing
 };
 

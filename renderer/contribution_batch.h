@@ -22,11 +22,14 @@ struct ContributionBatch {
 
   std::size_t size = 0;
   Integers pixel, tint;
-  Floats length;   ///< inside the body, in its unit; 0: never inside
-  Floats r, g, b;  ///< radiance
+  std::array<bool, capacity> carried;  ///< a part of a control variate
+  Floats length;                       ///< inside the body, in its unit; 0: never inside
+  Floats r, g, b;                      ///< radiance
 
-  void push(std::uint32_t pixel_index, double path_length, std::uint32_t tint_index, Rgb radiance) {
+  void push(std::uint32_t pixel_index, double path_length, std::uint32_t tint_index, Rgb radiance,
+            bool is_carried = false) {
     const std::size_t i = size++;
+    carried[i] = is_carried;
     const auto rounded = static_cast<float>(path_length);
     pixel[i] = pixel_index;
     tint[i] = tint_index;

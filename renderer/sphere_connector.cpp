@@ -11,9 +11,11 @@ SphereConnector::SphereConnector(const Scene& scene, Collector& collector, std::
                                                : nullptr),
       medium_(std::get<ScatteringInterior>(scene.interior).medium),
       ior_(std::get<SmoothInterface>(scene.interface).ior),
-      carried_(carried_share * std::numbers::inv_pi_v<float>),
       rng_(key) {
   if (!active()) return;
+  std::vector<float> shares;
+  for (const Lane& lane : scene.lanes) shares.push_back(carried_share(lane));
+  collector_.set_carried_shares(std::move(shares));
   std::vector<Sample2> numbers;
   numbers.reserve(LightStrata::size);
   for (std::size_t i = 0; i < LightStrata::size; ++i)
@@ -23,13 +25,23 @@ SphereConnector::SphereConnector(const Scene& scene, Collector& collector, std::
   for (std::size_t i = 0; i < LightStrata::size; ++i) strata_.set(i, lights_[i].direction);
 }
 
+float SphereConnector::carried_share(const Lane& lane) const {
+  const Rgb clear = std::visit(
+      [&](const auto& which) {
+        return which.apply({1, 1, 1}, 1 / medium_.sigma_s);
+      },
+      lane);
+  const float absorbed = std::clamp(1 - luminance(clear), 0.0f, 1.0f);  // in a mean free path
+  return 1 / (1 + 4 * std::sqrt(absorbed));
+}
+
 void SphereConnector::start(Path& path) {
   if (!active()) return;
   const double rho = length(path.p);
   const Vec3 axis = rho > 0 ? path.p * (1 / rho) : Vec3{0, 0, 1};
   path.walk = static_cast<std::uint32_t>(walks_.size());
   walks_.push_back({axis, environment_->irradiance_by_order(axis)});
-  for (Rgb& order : walks_.back().expected) order = order * carried_;
+  for (Rgb& order : walks_.back().expected) order = order * std::numbers::inv_pi_v<float>;
 }
 
 double SphereConnector::chance(Vec3 p) const {
@@ -124,7 +136,7 @@ void SphereConnector::collect_balanced(Queue& queue, ExitBranch branch) {
       distance = exit->distance;
       normal = from.p + distance * exit->d;
     }
-    const Rgb brought = light.value.radiance - expected(normal, from.walk);
+    const Rgb brought = light.value.radiance - expected(normal, from.walk) * far_share;
     collector_.collect(from.pixel, from.length + distance, 0,
                        brought * static_cast<float>(from.weight * share));
   }
@@ -144,8 +156,8 @@ void SphereConnector::collect_near(Queue& queue) {
     const float out = batch.drawn_cosine[i];
     const Rgb carried = walk.expected[0] + walk.expected[1] * (up * out) +
                         walk.expected[2] * (legendre2(up) * legendre2(out));
-    collector_.collect(from.pixel, from.length + batch.drawn_distance[i], 0,
-                       carried * (-from.weight * batch.drawn_share[i]));
+    collector_.collect_carried(from.pixel, from.length + batch.drawn_distance[i], 0,
+                               carried * (-from.weight * batch.drawn_share[i]));
     const EnvironmentSample& light = lights_[batch.light[i]];
     double share = batch.share[i], distance = batch.distance[i];
     if (share == 0) continue;

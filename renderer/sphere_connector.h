@@ -59,7 +59,10 @@ class SphereConnector {
     flush_far();
   }
 
-  /// What a walk that leaves at a place with normal n carries of the light that is expected there.
+  /// Of that, what a walk carries that balances its own way out with connections: on the far side,
+  /// and where scattering has a direction.
+  static constexpr float far_share = 0.7f;
+  /// The light that is expected at a place with normal n, as radiance.
   Rgb expected(Vec3 n, std::uint32_t walk_index) const {
     const Walk& walk = walks_[walk_index];
     const auto c = static_cast<float>(dot(n, walk.axis));
@@ -89,11 +92,10 @@ class SphereConnector {
     std::array<Waiting, ExitBatch::capacity> waiting;
   };
 
-  /// The share of the expected light that a walk carries. What is carried is a control variate:
-  /// with all of it a dense clear body has the least noise (a third of what .7 leaves), with half
-  /// of it an absorbing one. It is the same for all absorbers, so that one traced image serves each
-  /// with the bits of its own.
-  static constexpr float carried_share = 0.7f;
+  /// The share of the expected light that the walk carries to where it leaves near by, by relMSE on
+  /// materials of all albedos: with absorption it becomes a noise of its own, and connecting finds
+  /// more of the light. Each lane has its own; which paths are traced does not depend on it.
+  float carried_share(const Lane& lane) const;
   static float legendre2(float c) { return 1.5f * c * c - 0.5f; }
   double chance(Vec3 p) const;
   bool reaches_far(const SphereExits& exits) const;
@@ -113,7 +115,6 @@ class SphereConnector {
   const ImageEnvironment* environment_;
   Medium medium_;
   double ior_;
-  float carried_;  ///< radiance to irradiance
   Rng rng_;
   std::vector<EnvironmentSample> lights_;
   LightStrata strata_;

@@ -331,7 +331,9 @@ class Tracer {
       return collector_.collect(path, uniform->radiance, path.weight);
     if constexpr (connecting && smooth)
       if (path.pdf == Path::found_by_connecting)
-        return collector_.collect(path, connector_.expected(path.n, path.walk), path.weight);
+        return collector_.collect_carried(
+            path.pixel, path.length, path.tint,
+            connector_.expected(path.n, path.walk) * static_cast<float>(path.weight));
     Escapes& escapes = escapes_[path.length > 0 ? 1 : 0];
     EnvironmentBatch& batch = escapes.batch;
     const std::size_t i = batch.size++;
@@ -354,7 +356,7 @@ class Tracer {
       if (from.pdf > 0 && scene_.next_event_estimation) {  // it was looked for as well
         const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
         if constexpr (connecting && smooth) {
-          const Rgb expected = connector_.expected(from.n, from.walk);
+          const Rgb expected = connector_.expected(from.n, from.walk) * Connector::far_share;
           radiance = expected + (radiance - expected) * share;
         } else {
           radiance = radiance * share;
