@@ -31,12 +31,6 @@ std::string escaped(std::string_view name) {
   return text;
 }
 
-std::string derived_name(const ImageForm& form) {
-  const std::string format(name(form.format));
-  if (form.format == ImageFormat::exr) return "derived-" + escaped(form.colorspace) + ".exr";
-  return "derived-" + escaped(form.display) + '-' + escaped(form.view) + '.' + format;
-}
-
 std::string list_of(const auto& items, const auto& name_of) {
   std::string list;
   for (const auto& item : items) list += (list.empty() ? "" : ", ") + std::string(name_of(item));
@@ -44,6 +38,12 @@ std::string list_of(const auto& items, const auto& name_of) {
 }
 
 }  // namespace
+
+std::string form_name(const ImageForm& form) {
+  const std::string format(name(form.format));
+  if (form.format == ImageFormat::exr) return escaped(form.colorspace) + ".exr";
+  return escaped(form.display) + '-' + escaped(form.view) + '.' + format;
+}
 
 std::variant<ImageForm, Problem> image_form(const ImageQuery& query,
                                             const std::vector<Display>& displays) {
@@ -143,7 +143,7 @@ std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::s
   const std::string& original = result->image;
   const bool as_stored =
       !redeveloped && form.format == ImageFormat::exr && form.colorspace == colorspaces[0];
-  std::string artifact = as_stored ? original : derived_name(form);
+  std::string artifact = as_stored ? original : "derived-" + form_name(form);
   if (redeveloped)
     artifact =
         std::string(redeveloped_prefix) + content_hash(redeveloped->request) + '-' + artifact;

@@ -31,6 +31,9 @@ struct ImageForm {
   std::string colorspace;     ///< where it is scene-linear
 };
 
+/// The form as a file's name: "sRGB-plain.png".
+std::string form_name(const ImageForm& form);
+
 /// Checks the query against what there is.
 std::variant<ImageForm, api::Problem> image_form(const ImageQuery& query,
                                                  const std::vector<Display>& displays);

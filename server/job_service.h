@@ -83,6 +83,9 @@ class JobService {
   Result<ImageFile> point_image(const std::string& id, const std::string& point,
                                 const ImageQuery& query);
 
+  /// The contact sheet, of what is there so far.
+  Result<ImageFile> sheet(const std::string& id, const ImageQuery& query);
+
   // Changes (job_service_changes.cpp).
   /// Calls `look` now and after every change, until it returns true, the time is over or the
   /// service stops.
