@@ -124,7 +124,7 @@ std::optional<StoredResult> whole_result(Darkroom& darkroom, const std::string& 
 std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::string& content,
                                                 const std::string& request,
                                                 const ImageQuery& query) {
-  auto& [catalog, colors, store, artifacts, busy] = darkroom;
+  auto& [catalog, colors, store, artifacts, metrics, busy] = darkroom;
   const auto checked = image_form(query, colors.displays());
   if (const auto* problem = std::get_if<Problem>(&checked)) return *problem;
   const auto& form = std::get<ImageForm>(checked);
@@ -160,6 +160,7 @@ std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::s
               read_explorable(artifacts.path(content, explorable_name(original)));
           image = develop_explorable(stored.film, redeveloped->absorption.absorber,
                                      redeveloped->absorption.sigma_a_peak);
+          metrics.count_developed_image();
         } else {
           image = read_image(artifacts.path(content, original));
         }

@@ -13,6 +13,7 @@
 #include "renderer/image_io.h"
 #include "server/artifact_store.h"
 #include "server/job_store.h"
+#include "server/metrics.h"
 
 namespace translucube::server {
 
@@ -57,6 +58,7 @@ struct Darkroom {
   const ColorConfig& colors;
   JobStore& store;
   ArtifactStore& artifacts;
+  Metrics& metrics;
   std::mutex busy{};
 };
 
