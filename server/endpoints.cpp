@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "api/listings.h"
 #include "api/openapi.h"
@@ -113,6 +114,16 @@ std::vector<api::Fault> query_faults(const Route& route, const HttpRequest& requ
 }
 
 }  // namespace
+
+std::vector<Call> calls() {
+  std::vector<Call> all;
+  for (const Route& route : routes) {
+    Call& call = all.emplace_back(Call{route.method, route.pattern, {}});
+    std::ranges::copy_if(route.query, std::back_inserter(call.query),
+                         [](std::string_view name) { return !name.empty(); });
+  }
+  return all;
+}
 
 HttpResponse respond(Endpoints& endpoints, const HttpRequest& request) {
   const std::string method = request.method == "HEAD" ? "GET" : request.method;

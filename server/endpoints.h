@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "api/catalog.h"
 #include "api/problem.h"
@@ -24,6 +26,13 @@ struct Endpoints {
 
 /// The answer to any request; a failure of ours that is not foreseen passes as an exception.
 HttpResponse respond(Endpoints& endpoints, const HttpRequest& request);
+
+struct Call {
+  std::string_view method, pattern;     ///< "GET", "/v1/renders/{id}"
+  std::vector<std::string_view> query;  ///< the parameters it knows
+};
+/// Every call that `respond` knows.
+std::vector<Call> calls();
 
 HttpResponse problem_response(const api::Problem& problem);
 

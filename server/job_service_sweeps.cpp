@@ -1,4 +1,5 @@
 #include <charconv>
+#include <limits>
 
 #include "api/parse.h"
 #include "api/sweep.h"
@@ -14,7 +15,11 @@ using api::ProblemCode;
 
 Problem no_such_sweep() { return {ProblemCode::not_found, "There is no sweep of this id.", {}}; }
 
-Result<api::Sweep> parsed(const std::string& canonical, const api::Catalog& catalog) {
+/// A sweep that was accepted: it stays legal, whatever the limits are now.
+Result<api::Sweep> parsed(const std::string& canonical, api::Catalog catalog) {
+  constexpr double any = std::numeric_limits<double>::infinity();
+  constexpr auto most = std::numeric_limits<std::uint32_t>::max();
+  catalog.limits = {canonical.size(), std::uint64_t{1} << 31, most, any, any, most};
   auto result = api::parse_sweep_request(canonical, catalog);
   if (auto* problem = std::get_if<Problem>(&result)) return std::move(*problem);
   return std::get<api::Sweep>(std::move(result));
@@ -51,14 +56,9 @@ Result<api::SweepStatus> status_of(const StoredSweep& stored, const JobStore& st
   if (stored.started_ms) status.started_at = rfc3339(*stored.started_ms);
   if (stored.finished_ms) status.finished_at = rfc3339(*stored.finished_ms);
   status.sweep = std::get<api::Sweep>(std::move(sweep));
-  const auto planned = api::traced_images(status.sweep, catalog.limits);
-  const std::vector<SweepImageState> images = store.sweep_images(stored.id);
-  for (std::size_t i = 0; i < images.size() && i < planned.size(); ++i)
-    status.images.push_back({{planned[i].begin(), planned[i].end()},
-                             images[i].state,
-                             images[i].stats,
-                             images[i].error,
-                             images[i].cached});
+  for (SweepImageState& image : store.sweep_images(stored.id))
+    status.images.push_back({std::move(image.points), image.state, std::move(image.stats),
+                             std::move(image.error), image.cached});
   return status;
 }
 

@@ -116,6 +116,7 @@ struct SweepImageState {
   api::JobState state = api::JobState::queued;
   std::optional<std::string> stats, error;  ///< JSON texts
   bool cached = false;
+  std::vector<std::uint32_t> points;  ///< by lane
 };
 
 /// What watchers of a job or a sweep are told; numbered from 1 without a gap.

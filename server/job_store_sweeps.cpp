@@ -98,14 +98,20 @@ std::vector<StoredSweep> JobStore::list_sweeps(const JobFilter& filter) const {
 std::vector<SweepImageState> JobStore::sweep_images(const std::string& id) const {
   const Lock lock(reader_->mutex);
   Statement statement(*reader_,
-                      "SELECT id, state, stats, error, cached FROM jobs WHERE sweep_id = ? "
-                      "ORDER BY image_index");
+                      "SELECT id, point, state, stats, error, cached FROM jobs JOIN pictures "
+                      "ON job_id = id WHERE sweep_id = ? ORDER BY image_index, lane");
   statement.bind(id);
   std::vector<SweepImageState> images;
-  while (statement.step())
-    images.push_back({statement.text(0), rows::state_of(statement.text(1)),
-                      statement.optional_text(2), statement.optional_text(3),
-                      statement.integer(4) != 0});
+  while (statement.step()) {
+    if (images.empty() || images.back().job_id != statement.text(0))
+      images.push_back({statement.text(0),
+                        rows::state_of(statement.text(2)),
+                        statement.optional_text(3),
+                        statement.optional_text(4),
+                        statement.integer(5) != 0,
+                        {}});
+    images.back().points.push_back(static_cast<std::uint32_t>(statement.integer(1)));
+  }
   return images;
 }
 

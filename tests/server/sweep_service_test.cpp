@@ -227,6 +227,14 @@ TEST(SweepServiceTest, ARestartGoesOnWithTheSweep) {
   EXPECT_EQ(std::get<api::SweepStatus>(tested.service.get_sweep(id)).state, JobState::succeeded);
 }
 
+TEST(SweepServiceTest, WhatWasAcceptedIsToldWhateverTheLimitsAreNow) {
+  FakeRenderer renderer;
+  Tested tested(renderer.engine(), {0, {}});
+  const api::SweepStatus accepted = tested.submit(sweep_request(4, some_axes));
+  tested.service.catalog.limits = {10, 1, 1, 1, 1, 1};
+  EXPECT_EQ(to_json(tested.get(accepted.id)), to_json(accepted));
+}
+
 TEST(SweepServiceTest, TheLeastRecentlyUsedPicturesMakeRoom) {
   FakeRenderer renderer;
   Tested tested(renderer.engine());
