@@ -99,31 +99,6 @@ Limits read_limits(const json& value, const std::string& pointer, Faults& faults
   return limits;
 }
 
-ServerConfig read_server(const json& value, const std::string& pointer, ServerConfig server,
-                         const fs::path& folder, Faults& faults) {
-  ObjectReader object(value, pointer, faults);
-  const auto small = [&](const char* key, std::uint64_t low, std::uint64_t high, int& out) {
-    if (const auto number = object.integer(key, low, high)) out = static_cast<int>(*number);
-  };
-  if (auto host = object.string("host")) server.host = std::move(*host);
-  small("port", 0, 65535, server.port);
-  if (const auto data = object.string("data_folder"))
-    server.data_folder = (folder / *data).lexically_normal();
-  small("workers", 1, 1024, server.workers);
-  small("threads_per_worker", 0, 1024, server.threads_per_worker);
-  small("http_threads", 1, 1024, server.http_threads);
-  small("event_streams", 1, 100'000, server.event_streams);
-  small("waiting_requests", 1, 100'000, server.waiting_requests);
-  if (const auto bytes = object.integer("artifact_bytes", 1 << 20, std::uint64_t{1} << 60))
-    server.artifact_bytes = *bytes;
-  if (const auto length = object.integer("queue_length", 1, 10'000'000))
-    server.queue_length = *length;
-  if (const auto seconds = object.number("interactive_seconds", {0, 1e9}))
-    server.interactive_seconds = *seconds;
-  object.refuse_unknown_keys();
-  return server;
-}
-
 std::vector<fs::path> read_folders(const json& value, const std::string& pointer,
                                    const fs::path& folder, Faults& faults) {
   std::vector<fs::path> folders;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "api/request.h"
+#include "api/server_config.h"
 
 namespace translucube::api {
 
@@ -30,21 +31,6 @@ struct Limits {
   double seconds = 3600;
   double camera_samples = 1e12;   ///< pixels x samples of a render, times the images of a sweep
   std::uint32_t points = 20'000;  ///< of a sweep
-};
-
-/// The `server` section of config/service.json.
-struct ServerConfig {
-  std::string host = "127.0.0.1";
-  int port = 8080;
-  std::filesystem::path data_folder;  ///< store and artifacts
-  int workers = 1;                    ///< renders traced at once
-  int threads_per_worker = 0;         ///< 0: all cores
-  int http_threads = 16;
-  std::uint64_t artifact_bytes = std::uint64_t{20} << 30;  ///< of finished pictures on the disk
-  std::uint64_t queue_length = 20'000;                     ///< renders and images of sweeps
-  double interactive_seconds = 10;  ///< a render that is traced for longer waits with the sweeps
-  int event_streams = 64;           ///< at once
-  int waiting_requests = 32;        ///< at once, of `Prefer: wait` and `?wait=`
 };
 
 struct Catalog {

@@ -30,6 +30,10 @@ const ProblemKind& kind(ProblemCode code) {
   static constexpr ProblemKind idempotency_mismatch{
       "urn:translucube:problem:idempotency-mismatch", 422,
       "The idempotency key was used with another request"};
+  static constexpr ProblemKind unauthorized{"urn:translucube:problem:unauthorized", 401,
+                                            "A token is needed"};
+  static constexpr ProblemKind forbidden{"urn:translucube:problem:forbidden", 403,
+                                         "This is not for pages of other origins"};
   static constexpr ProblemKind not_found{"urn:translucube:problem:not-found", 404,
                                          "There is no such thing here"};
   static constexpr ProblemKind gone{"urn:translucube:problem:gone", 410, "It is no longer here"};
@@ -37,6 +41,8 @@ const ProblemKind& kind(ProblemCode code) {
                                                   "The method is not allowed here"};
   static constexpr ProblemKind not_acceptable{"urn:translucube:problem:not-acceptable", 406,
                                               "There is no such representation"};
+  static constexpr ProblemKind request_timeout{"urn:translucube:problem:request-timeout", 408,
+                                               "The request took too long to arrive"};
   static constexpr ProblemKind conflict{"urn:translucube:problem:conflict", 409,
                                         "The state of the resource does not allow this"};
   static constexpr ProblemKind not_ready{"urn:translucube:problem:not-ready", 409,
@@ -51,6 +57,10 @@ const ProblemKind& kind(ProblemCode code) {
       "urn:translucube:problem:range-not-satisfiable", 416, "The range is not in the file"};
   static constexpr ProblemKind queue_full{"urn:translucube:problem:queue-full", 429,
                                           "The queue is full"};
+  static constexpr ProblemKind misdirected{"urn:translucube:problem:misdirected", 421,
+                                           "The request is for another host"};
+  static constexpr ProblemKind headers_too_large{"urn:translucube:problem:headers-too-large", 431,
+                                                 "The headers are too large"};
   static constexpr ProblemKind overloaded{"urn:translucube:problem:overloaded", 503,
                                           "The service is busy"};
   static constexpr ProblemKind storage_failure{"urn:translucube:problem:storage-failure", 507,
@@ -66,6 +76,10 @@ const ProblemKind& kind(ProblemCode code) {
       return invalid_request;
     case ProblemCode::idempotency_mismatch:
       return idempotency_mismatch;
+    case ProblemCode::unauthorized:
+      return unauthorized;
+    case ProblemCode::forbidden:
+      return forbidden;
     case ProblemCode::not_found:
       return not_found;
     case ProblemCode::gone:
@@ -74,6 +88,8 @@ const ProblemKind& kind(ProblemCode code) {
       return method_not_allowed;
     case ProblemCode::not_acceptable:
       return not_acceptable;
+    case ProblemCode::request_timeout:
+      return request_timeout;
     case ProblemCode::conflict:
       return conflict;
     case ProblemCode::not_ready:
@@ -88,6 +104,10 @@ const ProblemKind& kind(ProblemCode code) {
       return range_not_satisfiable;
     case ProblemCode::queue_full:
       return queue_full;
+    case ProblemCode::misdirected:
+      return misdirected;
+    case ProblemCode::headers_too_large:
+      return headers_too_large;
     case ProblemCode::overloaded:
       return overloaded;
     case ProblemCode::storage_failure:

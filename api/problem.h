@@ -19,10 +19,13 @@ enum class ProblemCode {
   malformed_json,          // 400
   invalid_request,         // 422
   idempotency_mismatch,    // 422
+  unauthorized,            // 401: no token, or none that the service knows
+  forbidden,               // 403: a web page of another origin
   not_found,               // 404
   gone,                    // 410: removed to make room
   method_not_allowed,      // 405
   not_acceptable,          // 406
+  request_timeout,         // 408: the head of the request did not come in time
   conflict,                // 409: the state does not allow it (image of a failed render, ...)
   not_ready,               // 409: the image of a render that is still queued or running
   payload_too_large,       // 413
@@ -30,6 +33,8 @@ enum class ProblemCode {
   unsupported_media_type,  // 415
   range_not_satisfiable,   // 416
   queue_full,              // 429
+  misdirected,             // 421: for a host that the service is not
+  headers_too_large,       // 431
   overloaded,              // 503
   storage_failure,         // 507: full disk, store not writable
   internal,                // 500

@@ -46,10 +46,13 @@ struct ServeOptions {
   std::string config;
   std::optional<std::string> host;
   std::optional<int> port, threads, workers;
-  std::optional<std::filesystem::path> data;
+  std::optional<std::filesystem::path> data, tokens;
 };
 
 /// Serves until SIGTERM or SIGINT. One line on standard output says where, once it is ready.
 int run_serve(const ServeOptions& options);
+
+/// Prints a new token and its entry for the file that server.tokens_file names. The exit status.
+int run_token(const std::string& name);
 
 }  // namespace translucube::server

@@ -1,4 +1,3 @@
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -13,6 +12,9 @@
 #include "renderer/image_io.h"
 #include "server/cli.h"
 #include "server/data_folder.h"
+#include "server/endpoints.h"
+#include "server/front.h"
+#include "server/log.h"
 #include "server/routes.h"
 #include "server/signals.h"
 
@@ -22,12 +24,6 @@ namespace {
 // All that was promised is on the disk at any time: what has not ended by then may be cut off.
 constexpr std::chrono::seconds longest_drain(8);
 
-void log_to_stderr() {
-  auto logger = spdlog::stderr_logger_mt("translucube");
-  logger->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
-  spdlog::set_default_logger(logger);
-}
-
 api::Catalog configured(const ServeOptions& options) {
   api::Catalog catalog = api::load_catalog(config_file(options.config));
   api::ServerConfig& server = catalog.server;
@@ -36,6 +32,7 @@ api::Catalog configured(const ServeOptions& options) {
   server.threads_per_worker = options.threads.value_or(server.threads_per_worker);
   server.workers = options.workers.value_or(server.workers);
   server.data_folder = options.data.value_or(server.data_folder);
+  if (options.tokens) server.tokens_file = options.tokens;
   return catalog;
 }
 
@@ -57,9 +54,28 @@ class Watchdog {
   std::jthread thread_;
 };
 
+HttpOptions http_options(const api::Catalog& catalog) {
+  const api::ServerConfig& config = catalog.server;
+  HttpOptions http;
+  http.host = config.host;
+  http.port = config.port;
+  http.body_bytes = catalog.limits.body_bytes;
+  // What may take long is bounded by places of its own: http_threads are left for all else.
+  http.threads =
+      config.http_threads + config.waiting_requests + config.event_streams + config.transfers;
+  http.transfers = config.transfers;
+  http.connections = config.connections;
+  http.header_timeout = std::chrono::seconds(config.header_timeout_s);
+  http.idle_timeout = std::chrono::seconds(config.idle_timeout_s);
+  http.transfer_timeout = std::chrono::seconds(config.transfer_timeout_s);
+  return http;
+}
+
 int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   prepare_image_codecs();
   const api::Catalog catalog = configured(options);
+  set_up_log(catalog.server.log_format);
+  AccessPolicy policy = access_policy(catalog.server);
   const ColorConfig colors(catalog.display_config);
   const DataFolder folder(catalog.server.data_folder);
   StoreOptions queue;
@@ -68,9 +84,11 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   JobStore store(folder.store_file(), queue);
   ArtifactStore artifacts(folder.artifacts());
   JobService service(catalog, colors, store, artifacts);
+  Metrics metrics;
   Endpoints endpoints{service, catalog, colors};
-  HttpServer server(endpoints, {catalog.server.host, catalog.server.port,
-                                catalog.server.http_threads, catalog.limits.body_bytes});
+  Front front(std::move(policy), metrics,
+              [&](const HttpRequest& request) { return respond(endpoints, request); });
+  HttpServer server(front.handlers(), http_options(catalog));
 
   std::jthread http([&] { server.run(); });
   while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -95,7 +113,6 @@ int run_serve(const ServeOptions& options) {
     signal = received;
     signal.notify_all();
   });
-  log_to_stderr();
   try {
     return serve_or_throw(options, signal);
   } catch (const std::exception& error) {

@@ -23,6 +23,8 @@ struct HttpRequest {
   std::vector<std::pair<std::string, std::string>> query;
   std::map<std::string, std::string> headers;  ///< by lower-case name; repeated ones joined by ", "
   std::string body;
+  std::string id = {};      ///< of the request: the client's or a new one, for the log
+  std::string client = {};  ///< name of the token it carries, "" where none is needed
 
   std::string_view header(const std::string& lower_case_name) const {
     const auto it = headers.find(lower_case_name);
@@ -36,9 +38,11 @@ struct FileSlice {
   std::uint64_t offset = 0, length = 0;
 };
 
-/// Server-sent events. `next` blocks for a second at most; an empty text says that there is nothing
-/// yet, none that the stream has ended. It is destroyed as soon as the client is gone.
+/// Server-sent events as they come, sent with status 200 and no end that is known before.
 struct EventStream {
+  /// The next bytes to send. Waits for a second at most: "" says that there is nothing yet, nullopt
+  /// that the stream is over. Called by one thread at a time; destroyed as soon as the client has
+  /// hung up or the service stops.
   std::function<std::optional<std::string>()> next;
 };
 

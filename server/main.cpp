@@ -87,16 +87,22 @@ int main(int argc, char** argv) {
   serve_verb->add_option("--port", serve.port, "Port to listen on; 0: any free one")
       ->check(CLI::Range(0, 65535));
   serve_verb->add_option("--data", serve.data, "Folder of the queue and the pictures");
+  serve_verb->add_option("--tokens", serve.tokens, "File of the tokens that open the service");
   serve_verb->add_option("--threads", serve.threads, "Threads for each render; 0: all cores")
       ->check(CLI::Range(0, 4096));
   serve_verb->add_option("--workers", serve.workers, "Renders traced at once")
       ->check(CLI::Range(1, 1024));
+
+  std::string token_name;
+  CLI::App* token_verb = app.add_subcommand("token", "Makes a token for who may use the service");
+  token_verb->add_option("--name", token_name, "Who will have it")->required();
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : exit_bad_request;
   }
+  if (token_verb->parsed()) return run_token(token_name);
   if (serve_verb->parsed()) return run_serve(serve);
   if (appearance_verb->parsed()) return run_appearance(appearance);
   if (develop_verb->parsed()) return run_develop(develop);

@@ -76,9 +76,23 @@ TEST(Catalog, RedGlassIsReddish) {
 
 TEST_F(Configuration, IsReadWhole) {
   config["limits"] = {{"body_bytes", 2048}, {"pixels", 64}, {"samples", 5}, {"seconds", 1.5}};
-  config["server"] = {
-      {"host", "::1"},           {"port", 0},        {"data_folder", "/tmp/x/../y"}, {"workers", 3},
-      {"threads_per_worker", 2}, {"http_threads", 4}};
+  config["server"] = {{"host", "::1"},
+                      {"port", 0},
+                      {"data_folder", "/tmp/x/../y"},
+                      {"workers", 3},
+                      {"threads_per_worker", 2},
+                      {"http_threads", 4},
+                      {"tokens_file", "t.json"},
+                      {"hosts", {"Cube.example"}},
+                      {"origins", {"https://Lab.example"}},
+                      {"waiting_requests", 5},
+                      {"event_streams", 6},
+                      {"transfers", 7},
+                      {"connections", 8},
+                      {"header_timeout_s", 9},
+                      {"idle_timeout_s", 10},
+                      {"transfer_timeout_s", 11},
+                      {"log_format", "json"}};
   config["request_defaults"]["image"] = {{"width", 8}, {"height", 8}};
   config["request_defaults"]["quality"] = {{"samples", 4}};
   config["file_folders"] = {"."};
@@ -93,9 +107,76 @@ TEST_F(Configuration, IsReadWhole) {
   EXPECT_EQ(catalog.server.workers, 3);
   EXPECT_EQ(catalog.server.threads_per_worker, 2);
   EXPECT_EQ(catalog.server.http_threads, 4);
+  EXPECT_EQ(catalog.server.tokens_file, folder.path() / "t.json");
+  EXPECT_EQ(catalog.server.hosts, std::vector<std::string>{"cube.example"});
+  EXPECT_EQ(catalog.server.origins, std::vector<std::string>{"https://lab.example"});
+  EXPECT_EQ(catalog.server.waiting_requests, 5);
+  EXPECT_EQ(catalog.server.event_streams, 6);
+  EXPECT_EQ(catalog.server.transfers, 7);
+  EXPECT_EQ(catalog.server.connections, 8);
+  EXPECT_EQ(catalog.server.header_timeout_s, 9);
+  EXPECT_EQ(catalog.server.idle_timeout_s, 10);
+  EXPECT_EQ(catalog.server.transfer_timeout_s, 11);
+  EXPECT_EQ(catalog.server.log_format, LogFormat::json);
   EXPECT_EQ(catalog.defaults.width, 8);
   EXPECT_EQ(catalog.defaults.quality, Quality(SampleTarget{4}));
   EXPECT_EQ(catalog.file_folders, std::vector{folder.path()});
+}
+
+TEST_F(Configuration, TheServersKeysAreChecked) {
+  for (const auto& [key, value, fault] : std::vector<std::tuple<std::string, json, std::string>>{
+           {"tokens_file", 7, "string"},
+           {"hosts", "x", "must be an array"},
+           {"hosts", {"http://x"}, "each must be host or host:port"},
+           {"origins", {"x"}, "each must be http[s]://host[:port]"},
+           {"origins", {"http://x/"}, "each must be http[s]://host[:port]"},
+           {"event_streams", -1, "integer"},
+           {"connections", 0, "integer"},
+           {"log_format", "xml", "must be logfmt or json"},
+           {"log", "json", "unknown key"}}) {
+    config["server"] = {{key, value}};
+    EXPECT_THAT(error(), HasSubstr("/server/" + key + ": ")) << key;
+    EXPECT_THAT(error(), HasSubstr(fault)) << key;
+  }
+}
+
+TEST_F(Configuration, TheShippedServerSectionHoldsTheDefaults) {
+  const ServerConfig& shipped = shipped_catalog().server;
+  const ServerConfig defaults;
+  EXPECT_EQ(shipped.host, defaults.host);
+  EXPECT_EQ(shipped.port, defaults.port);
+  EXPECT_EQ(shipped.threads_per_worker, defaults.threads_per_worker);
+  EXPECT_EQ(shipped.tokens_file, defaults.tokens_file);
+  EXPECT_EQ(shipped.hosts, defaults.hosts);
+  EXPECT_EQ(shipped.origins, defaults.origins);
+  EXPECT_EQ(shipped.http_threads, defaults.http_threads);
+  EXPECT_EQ(shipped.waiting_requests, defaults.waiting_requests);
+  EXPECT_EQ(shipped.event_streams, defaults.event_streams);
+  EXPECT_EQ(shipped.transfers, defaults.transfers);
+  EXPECT_EQ(shipped.connections, defaults.connections);
+  EXPECT_EQ(shipped.header_timeout_s, defaults.header_timeout_s);
+  EXPECT_EQ(shipped.idle_timeout_s, defaults.idle_timeout_s);
+  EXPECT_EQ(shipped.transfer_timeout_s, defaults.transfer_timeout_s);
+  EXPECT_EQ(shipped.queue_length, defaults.queue_length);
+  EXPECT_EQ(shipped.interactive_seconds, defaults.interactive_seconds);
+  EXPECT_EQ(shipped.artifact_bytes, defaults.artifact_bytes);
+  EXPECT_EQ(shipped.log_format, defaults.log_format);
+}
+
+void expect_documented(const json& value, const std::string& path, const std::string& document) {
+  for (const auto& [key, member] : value.items()) {
+    const std::string name = path.empty() ? key : path + '.' + key;
+    // What a request may say, its defaults included, is described in api/openapi.json.
+    if (member.is_object() && name != "request_defaults")
+      expect_documented(member, name, document);
+    else
+      EXPECT_THAT(document, HasSubstr("\n| `" + name + "` |")) << name;
+  }
+}
+
+TEST_F(Configuration, EveryKeyOfTheShippedFileIsDocumented) {
+  std::ifstream file(TRANSLUCUBE_SOURCE_DIR "/docs/configuration.md");
+  expect_documented(config, "", {std::istreambuf_iterator<char>(file), {}});
 }
 
 TEST_F(Configuration, ServerAndLimitsHaveDefaults) {

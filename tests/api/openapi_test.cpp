@@ -40,11 +40,12 @@ TEST(OpenApi, DescribesEveryCallOfTheService) {
   for (const auto& [path, item] : document()["paths"].items())
     for (const auto& [method, operation] : item.items())
       if (method != "parameters") calls.insert(method + ' ' + path);
-  EXPECT_EQ(calls, (std::set<std::string>{
-                       "post /v1/renders", "get /v1/renders", "get /v1/renders/{id}",
-                       "delete /v1/renders/{id}", "get /v1/renders/{id}/image",
-                       "post /v1/renders/{id}/cancel", "get /v1/absorbers", "get /v1/environments",
-                       "get /v1/displays", "get /livez", "get /readyz", "get /openapi.json"}));
+  EXPECT_EQ(calls,
+            (std::set<std::string>{"post /v1/renders", "get /v1/renders", "get /v1/renders/{id}",
+                                   "delete /v1/renders/{id}", "get /v1/renders/{id}/image",
+                                   "post /v1/renders/{id}/cancel", "get /v1/absorbers",
+                                   "get /v1/environments", "get /v1/displays", "get /livez",
+                                   "get /readyz", "get /metrics", "get /openapi.json"}));
 }
 
 TEST(OpenApi, ReferencesLeadSomewhere) {

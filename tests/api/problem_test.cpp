@@ -16,15 +16,22 @@ constexpr std::array all_codes{ProblemCode::malformed_http,
                                ProblemCode::malformed_json,
                                ProblemCode::invalid_request,
                                ProblemCode::idempotency_mismatch,
+                               ProblemCode::unauthorized,
+                               ProblemCode::forbidden,
                                ProblemCode::not_found,
+                               ProblemCode::gone,
                                ProblemCode::method_not_allowed,
                                ProblemCode::not_acceptable,
+                               ProblemCode::request_timeout,
                                ProblemCode::conflict,
                                ProblemCode::not_ready,
                                ProblemCode::payload_too_large,
                                ProblemCode::uri_too_long,
                                ProblemCode::unsupported_media_type,
                                ProblemCode::range_not_satisfiable,
+                               ProblemCode::misdirected,
+                               ProblemCode::queue_full,
+                               ProblemCode::headers_too_large,
                                ProblemCode::overloaded,
                                ProblemCode::storage_failure,
                                ProblemCode::internal};
@@ -41,9 +48,13 @@ TEST(Problem, CodesHaveTheirOwnStableType) {
 TEST(Problem, CodesHaveTheStatusOfTheContract) {
   EXPECT_EQ(kind(ProblemCode::malformed_http).status, 400);
   EXPECT_EQ(kind(ProblemCode::malformed_json).status, 400);
+  EXPECT_EQ(kind(ProblemCode::unauthorized).status, 401);
+  EXPECT_EQ(kind(ProblemCode::forbidden).status, 403);
   EXPECT_EQ(kind(ProblemCode::not_found).status, 404);
+  EXPECT_EQ(kind(ProblemCode::gone).status, 410);
   EXPECT_EQ(kind(ProblemCode::method_not_allowed).status, 405);
   EXPECT_EQ(kind(ProblemCode::not_acceptable).status, 406);
+  EXPECT_EQ(kind(ProblemCode::request_timeout).status, 408);
   EXPECT_EQ(kind(ProblemCode::conflict).status, 409);
   EXPECT_EQ(kind(ProblemCode::not_ready).status, 409);
   EXPECT_EQ(kind(ProblemCode::payload_too_large).status, 413);
@@ -53,6 +64,9 @@ TEST(Problem, CodesHaveTheStatusOfTheContract) {
   EXPECT_EQ(kind(ProblemCode::invalid_request).status, 422);
   EXPECT_EQ(kind(ProblemCode::idempotency_mismatch).status, 422);
   EXPECT_EQ(kind(ProblemCode::internal).status, 500);
+  EXPECT_EQ(kind(ProblemCode::misdirected).status, 421);
+  EXPECT_EQ(kind(ProblemCode::queue_full).status, 429);
+  EXPECT_EQ(kind(ProblemCode::headers_too_large).status, 431);
   EXPECT_EQ(kind(ProblemCode::overloaded).status, 503);
   EXPECT_EQ(kind(ProblemCode::storage_failure).status, 507);
 }

@@ -267,6 +267,7 @@ TEST(EndpointsTest, EveryPathOfTheOpenApiDocumentIsServedWithItsMethods) {
   const json document = body_of(response);
   ASSERT_GE(document["paths"].size(), 9u);
   for (const auto& [pattern, methods] : document["paths"].items()) {
+    if (pattern == "/metrics") continue;  // answered before the endpoints, in front.cpp
     std::string path = pattern;
     if (const auto brace = path.find("{id}"); brace != path.npos)
       path.replace(brace, 4, "01ARZ3NDEKTSV4RRFFQ69G5FAV");

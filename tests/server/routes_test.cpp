@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "server/endpoints.h"
+#include "server/front.h"
 #include "tests/server/fixture.h"
 #include "tests/server/wire.h"
 #include "tests/support/malformed_corpus.h"
@@ -19,10 +21,17 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
+HttpOptions few_threads(std::uint64_t body_bytes, int threads) {
+  HttpOptions options;
+  options.body_bytes = body_bytes;
+  options.threads = threads;
+  return options;
+}
+
 struct Served {
   explicit Served(int workers = 1, int threads = 8)
       : service(folder.path(), renderer.engine(), {workers, {}}),
-        server(endpoints, {"127.0.0.1", 0, threads, service.catalog.limits.body_bytes}),
+        server(handlers(), few_threads(service.catalog.limits.body_bytes, threads)),
         thread([this] { server.run(); }) {
     while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     client.set_read_timeout(60);
@@ -32,6 +41,11 @@ struct Served {
   ~Served() {
     service.service.shut_down();
     server.stop();
+  }
+  HttpHandlers handlers() {
+    HttpHandlers all;
+    all.respond = [this](const HttpRequest& request) { return respond(endpoints, request); };
+    return all;
   }
 
   TempFolder folder;
@@ -255,9 +269,11 @@ TEST(RoutesTest, AFailureOfOursTellsNothingOfItself) {
 
 TEST(RoutesTest, ASecondServiceOnThePortIsRefused) {
   Served served;
-  EXPECT_THROW(HttpServer(served.endpoints, {"127.0.0.1", served.server.port(), 2, 1024}),
-               ListenError);
-  EXPECT_THROW(HttpServer(served.endpoints, {"no.such.host.invalid", 0, 2, 1024}), ListenError);
+  HttpOptions options;
+  options.port = served.server.port();
+  EXPECT_THROW(HttpServer(served.handlers(), options), ListenError);
+  options.host = "no.such.host.invalid";
+  EXPECT_THROW(HttpServer(served.handlers(), options), ListenError);
 }
 
 TEST(RoutesTest, ClientsThatWaitLeaveThreadsForProbes) {

@@ -39,14 +39,20 @@ class Wire {
   std::string receive(int milliseconds = 15'000) {
     std::string text;
     while (!whole(text)) {
-      pollfd wait{socket_.get(), POLLIN, 0};
-      if (::poll(&wait, 1, milliseconds) <= 0) break;
-      char buffer[4096];
-      const ssize_t got = ::recv(socket_.get(), buffer, sizeof buffer, 0);
-      if (got <= 0) break;
-      text.append(buffer, static_cast<std::size_t>(got));
+      const std::string some = receive_some(milliseconds);
+      if (some.empty()) break;
+      text += some;
     }
     return text;
+  }
+
+  /// The next bytes; "" at the end of the connection or of the time.
+  std::string receive_some(int milliseconds = 15'000) {
+    pollfd wait{socket_.get(), POLLIN, 0};
+    if (::poll(&wait, 1, milliseconds) <= 0) return {};
+    char buffer[4096];
+    const ssize_t got = ::recv(socket_.get(), buffer, sizeof buffer, 0);
+    return got <= 0 ? std::string() : std::string(buffer, static_cast<std::size_t>(got));
   }
 
   /// True if the other side closes the connection in time.

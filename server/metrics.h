@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace translucube::server {
+
+/// What the store holds at the moment of a scrape.
+struct StoreGauges {
+  std::map<std::string, std::uint64_t> renders;  ///< by state
+  std::map<std::string, std::uint64_t> tasks;    ///< by state
+  std::uint64_t queue_depth = 0;                 ///< renders that wait for a worker
+  double oldest_queued_age_s = 0;                ///< 0 where none waits
+};
+
+/// What one pass over an image did.
+struct PassFigures {
+  double seconds = 0;
+  std::uint64_t camera_samples = 0, paths = 0, nan_samples = 0;
+};
+
+/// The service's own figures for Prometheus. Safe to share by threads; counting takes no lock that
+/// a scrape holds for long.
+class Metrics {
+ public:
+  Metrics();
+  ~Metrics();
+  Metrics(const Metrics&) = delete;
+  Metrics& operator=(const Metrics&) = delete;
+
+  /// `route` is a pattern such as /v1/renders/{id}, so that its values are few.
+  void count_request(std::string_view method, std::string_view route, int status, double seconds);
+  /// An event stream is open as long as the value lives, which must end before the metrics do.
+  std::shared_ptr<void> open_stream();
+
+  void count_pass(const PassFigures& pass);
+  void count_render(double seconds);  ///< from its first pass to its image
+  void count_cache_hit();             ///< a request answered by what was rendered before
+  void count_cache_miss();
+  void count_traced_image();     ///< an image that cost paths
+  void count_developed_image();  ///< an image developed from paths traced before
+
+  /// Asked at each scrape. A callback that throws leaves its gauges out.
+  void set_store_gauges(std::function<StoreGauges()> gauges);
+
+  /// Prometheus text format 0.0.4.
+  std::string text() const;
+  static constexpr const char* content_type = "text/plain; version=0.0.4; charset=utf-8";
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace translucube::server
