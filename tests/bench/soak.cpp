@@ -227,6 +227,7 @@ int soak(double minutes, int clients, unsigned seed) {
       std::this_thread::sleep_for(std::chrono::milliseconds(500));
       resident.push_back(resident_mb(service.process().pid()));
     }
+    for (std::jthread& thread : threads) thread.request_stop();
   }  // each client waits for the end of what it has asked for
 
   const std::size_t samples = resident.size();
