@@ -11,7 +11,7 @@ SphereConnector::SphereConnector(const Scene& scene, Collector& collector, std::
                                                : nullptr),
       medium_(std::get<ScatteringInterior>(scene.interior).medium),
       ior_(std::get<SmoothInterface>(scene.interface).ior),
-      carried_(carried_share(scene, medium_) * std::numbers::inv_pi_v<float>),
+      carried_(carried_share * std::numbers::inv_pi_v<float>),
       rng_(key) {
   if (!active()) return;
   std::vector<Sample2> numbers;
@@ -21,17 +21,6 @@ SphereConnector::SphereConnector(const Scene& scene, Collector& collector, std::
         {(static_cast<double>(i) + rng_.uniform()) / LightStrata::size, rng_.uniform()});
   lights_ = environment_->sample(numbers);
   for (std::size_t i = 0; i < LightStrata::size; ++i) strata_.set(i, lights_[i].direction);
-}
-
-float SphereConnector::carried_share(const Scene& scene, const Medium& medium) {
-  if (scene.spread) return 0.7f;  // of absorbers to come
-  const Rgb clear = std::visit(
-      [&](const auto& lane) {
-        return lane.apply({1, 1, 1}, 1 / medium.sigma_s);
-      },
-      scene.lanes[0]);
-  const float absorbed = std::clamp(1 - luminance(clear), 0.0f, 1.0f);  // in a mean free path
-  return 1 / (1 + 4 * std::sqrt(absorbed));
 }
 
 void SphereConnector::start(Path& path) {

@@ -34,8 +34,6 @@ inline constexpr double roulette_of_scattered = 1.0 / 4;
 inline constexpr double roulette_of_rough = 1.0 / 8;
 /// Lights that a collision with a microfacet looks for.
 inline constexpr std::uint32_t lights_of_a_collision = 8;
-/// The same from outside where light goes on inside the body: what is reflected there is little.
-inline constexpr std::uint32_t lights_of_a_reflection = 2;
 /// Below this scattering coefficient [1 / unit] a walk is so short that a camera sample starts two.
 inline constexpr double short_walk_sigma_s = 2;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
@@ -81,7 +79,7 @@ class Tracer {
       boundary();
     }
     connector_.flush();
-    collect_escapes();
+    for (Escapes& escapes : escapes_) collect(escapes);
     collector_.flush();
   }
 
@@ -316,6 +314,16 @@ class Tracer {
     if (path.survives()) arriving_.push_back(path);
   }
 
+  struct Escape {
+    Vec3 n;
+    double length, weight, pdf;
+    std::uint32_t walk, pixel, tint;
+  };
+  struct Escapes {
+    EnvironmentBatch batch;
+    std::array<Escape, EnvironmentBatch::capacity> from;
+  };
+
   /// To the environment, where many look together.
   void escape(const Path& path) {
     collector_.note("escape", path);
@@ -324,20 +332,24 @@ class Tracer {
     if constexpr (connecting && smooth)
       if (path.pdf == Path::found_by_connecting)
         return collector_.collect(path, connector_.expected(path.n, path.walk), path.weight);
-    const std::size_t i = escaping_.size++;
-    escaping_.x[i] = static_cast<float>(path.d.x);
-    escaping_.y[i] = static_cast<float>(path.d.y);
-    escaping_.z[i] = static_cast<float>(path.d.z);
-    escapes_[i] = {path.n, path.length, path.weight, path.pdf, path.walk, path.pixel, path.tint};
-    if (escaping_.size == EnvironmentBatch::capacity) collect_escapes();
+    Escapes& escapes = escapes_[path.length > 0 ? 1 : 0];
+    EnvironmentBatch& batch = escapes.batch;
+    const std::size_t i = batch.size++;
+    batch.x[i] = static_cast<float>(path.d.x);
+    batch.y[i] = static_cast<float>(path.d.y);
+    batch.z[i] = static_cast<float>(path.d.z);
+    escapes.from[i] = {path.n,    path.length, path.weight, path.pdf,
+                       path.walk, path.pixel,  path.tint};
+    if (batch.size == EnvironmentBatch::capacity) collect(escapes);
   }
 
-  void collect_escapes() {
-    if (escaping_.size == 0) return;
-    escaping_.look_up(std::get<ImageEnvironment>(scene_.environment));
-    for (std::size_t i = 0; i < escaping_.size; ++i) {
-      const Escape& from = escapes_[i];
-      const EnvironmentValue& light = escaping_.value[i];
+  void collect(Escapes& escapes) {
+    EnvironmentBatch& batch = escapes.batch;
+    if (batch.size == 0) return;
+    batch.look_up(std::get<ImageEnvironment>(scene_.environment));
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      const Escape& from = escapes.from[i];
+      const EnvironmentValue& light = batch.value[i];
       Rgb radiance = light.radiance;
       if (from.pdf > 0 && scene_.next_event_estimation) {  // it was looked for as well
         const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
@@ -351,7 +363,7 @@ class Tracer {
       collector_.collect(from.pixel, from.length, from.tint,
                          radiance * static_cast<float>(from.weight));
     }
-    escaping_.size = 0;
+    batch.size = 0;
   }
 
   void arrive_inside(Path& path, const Hit& hit) {
@@ -382,13 +394,9 @@ class Tracer {
   Collector collector_;
   LightList lights_;  ///< of the rough interface
   Connector connector_;
-  struct Escape {
-    Vec3 n;
-    double length, weight, pdf;
-    std::uint32_t walk, pixel, tint;
-  };
-  EnvironmentBatch escaping_;
-  std::array<Escape, EnvironmentBatch::capacity> escapes_;
+  /// What was never inside waits apart from the rest: sums of floats depend on their order, and a
+  /// black body traced alone must have the bits of a black lane.
+  std::array<Escapes, 2> escapes_;
   std::vector<Path> arriving_, walking_, leaving_;
   std::vector<Path> crossing_;  ///< at the rough interface
   MicrosurfaceBatch microsurface_;

@@ -34,9 +34,7 @@ void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
         static_cast<float>(from_outside ? ior : 1 / ior), from_outside,
         interface_.multiple_scattering
   };
-  const std::uint32_t lights_each = lights_.empty()        ? 0
-                                    : open && from_outside ? lights_of_a_reflection
-                                                           : lights_of_a_collision;
+  const std::uint32_t lights_each = lights_.empty() ? 0 : lights_of_a_collision;
   std::array<Rgb, MicrosurfaceBatch::capacity> found{};
   microsurface_.start(interface);
   while (microsurface_.under_way() > 0) {

@@ -30,6 +30,19 @@ struct RenderOptions {
 /// Renders, or explains one sample of one pixel. The exit status; messages go to standard error.
 int run_render(const RenderOptions& options);
 
+struct SweepOptions {
+  std::string request;  ///< a file, or "-" for standard input
+  std::filesystem::path folder;
+  std::string config;
+  std::optional<std::string> display, view;
+  int threads = 0;  ///< 0: all cores
+  bool dry_run = false;
+};
+
+/// Renders a sweep into a folder: each point as EXR and PNG, the contact sheet as sheet.exr and
+/// sheet.png, and what was made of what as sweep.json. The exit status.
+int run_sweep(const SweepOptions& options);
+
 struct DevelopOptions {
   std::filesystem::path film;  ///< an explorable film, of --explorable-out
   std::vector<std::filesystem::path> outputs;

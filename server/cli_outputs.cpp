@@ -1,6 +1,11 @@
 #include "server/cli_outputs.h"
 
+#include <iostream>
+#include <new>
+
+#include "renderer/scene.h"
 #include "server/cli.h"
+#include "server/cli_input.h"
 #include "server/file.h"
 
 namespace translucube::server {
@@ -8,6 +13,26 @@ namespace translucube::server {
 namespace fs = std::filesystem;
 
 Refusal refusal_of(const api::Problem& problem) { return {exit_bad_request, to_text(problem)}; }
+
+int ended_command(const std::function<int()>& verb) {
+  try {
+    return verb();
+  } catch (const Refusal& refusal) {
+    std::cerr << refusal.message;
+    return refusal.status;
+  } catch (const InputError& error) {
+    std::cerr << error.what() << '\n';
+    return exit_bad_request;
+  } catch (const SceneError& error) {
+    std::cerr << error.what() << '\n';
+    return exit_bad_request;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "There is not enough memory for a render of this size.\n";
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+  }
+  return exit_failure;
+}
 
 void check_output_place(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");

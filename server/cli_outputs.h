@@ -3,6 +3,7 @@
 // The pictures that a verb of the command line writes.
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@ struct Refusal {
   std::string message;
 };
 Refusal refusal_of(const api::Problem& problem);
+
+/// Runs a verb: what it throws becomes a message on standard error and the exit status.
+int ended_command(const std::function<int()>& verb);
 
 struct Output {
   std::filesystem::path file;

@@ -125,23 +125,7 @@ int run_render(const RenderOptions& options) {
     signal = received;
     stop.request_stop();
   });
-  try {
-    return render_or_throw(options, stop.get_token(), signal);
-  } catch (const Refusal& refusal) {
-    std::cerr << refusal.message;
-    return refusal.status;
-  } catch (const InputError& error) {
-    std::cerr << error.what() << '\n';
-    return exit_bad_request;
-  } catch (const SceneError& error) {
-    std::cerr << error.what() << '\n';
-    return exit_bad_request;
-  } catch (const std::bad_alloc&) {
-    std::cerr << "There is not enough memory for a render of this size.\n";
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
-  }
-  return exit_failure;
+  return ended_command([&] { return render_or_throw(options, stop.get_token(), signal); });
 }
 
 }  // namespace translucube::server

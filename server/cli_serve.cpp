@@ -71,6 +71,21 @@ HttpOptions http_options(const api::Catalog& catalog) {
   return http;
 }
 
+StoreGauges gauges_of(const QueueGauges& queue) {
+  StoreGauges gauges;
+  for (const api::JobState state : api::all_job_states) {
+    const auto index = static_cast<std::size_t>(state);
+    gauges.renders[std::string(name(state))] = queue.jobs[index];
+    gauges.sweeps[std::string(name(state))] = queue.sweeps[index];
+  }
+  gauges.tasks = {{"interactive", queue.waiting_tasks[0]}, {"batch", queue.waiting_tasks[1]}};
+  gauges.queue_depth = gauges.renders["queued"];
+  gauges.oldest_queued_age_s = queue.oldest_waiting_s;
+  gauges.results = queue.results;
+  gauges.result_bytes = queue.result_bytes;
+  return gauges;
+}
+
 int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   prepare_image_codecs();
   const api::Catalog catalog = configured(options);
@@ -83,8 +98,9 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   queue.interactive_seconds = catalog.server.interactive_seconds;
   JobStore store(folder.store_file(), queue);
   ArtifactStore artifacts(folder.artifacts());
-  JobService service(catalog, colors, store, artifacts);
   Metrics metrics;
+  metrics.set_store_gauges([&store] { return gauges_of(store.gauges()); });
+  JobService service(catalog, colors, store, artifacts, metrics);
   Endpoints endpoints{service, catalog, colors};
   Front front(std::move(policy), metrics,
               [&](const HttpRequest& request) { return respond(endpoints, request); });

@@ -63,6 +63,7 @@ constexpr std::array routes{
     Route{"GET", "/v1/sweeps/{id}", get_sweep, {"wait"}},
     Route{"DELETE", "/v1/sweeps/{id}", delete_sweep},
     Route{"GET", "/v1/sweeps/{id}/points/{point}/image", get_point_image, image_parameters},
+    Route{"GET", "/v1/sweeps/{id}/sheet", get_sheet, {"format", "display", "view", "colorspace"}},
     Route{"GET", "/v1/sweeps/{id}/events", get_sweep_events},
     Route{"POST", "/v1/sweeps/{id}/cancel", cancel_sweep},
     Route{"GET", "/v1/absorbers", get_absorbers},

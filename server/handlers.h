@@ -30,6 +30,7 @@ HttpResponse delete_sweep(Endpoints&, const HttpRequest&, const PathIds&);
 // image_endpoint.cpp: negotiated, tagged, whole or in part.
 HttpResponse get_image(Endpoints&, const HttpRequest&, const PathIds&);
 HttpResponse get_point_image(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse get_sheet(Endpoints&, const HttpRequest&, const PathIds&);
 
 // event_endpoint.cpp
 HttpResponse get_render_events(Endpoints&, const HttpRequest&, const PathIds&);

@@ -31,12 +31,6 @@ std::string escaped(std::string_view name) {
   return text;
 }
 
-std::string derived_name(const ImageForm& form) {
-  const std::string format(name(form.format));
-  if (form.format == ImageFormat::exr) return "derived-" + escaped(form.colorspace) + ".exr";
-  return "derived-" + escaped(form.display) + '-' + escaped(form.view) + '.' + format;
-}
-
 std::string list_of(const auto& items, const auto& name_of) {
   std::string list;
   for (const auto& item : items) list += (list.empty() ? "" : ", ") + std::string(name_of(item));
@@ -44,6 +38,12 @@ std::string list_of(const auto& items, const auto& name_of) {
 }
 
 }  // namespace
+
+std::string form_name(const ImageForm& form) {
+  const std::string format(name(form.format));
+  if (form.format == ImageFormat::exr) return escaped(form.colorspace) + ".exr";
+  return escaped(form.display) + '-' + escaped(form.view) + '.' + format;
+}
 
 std::variant<ImageForm, Problem> image_form(const ImageQuery& query,
                                             const std::vector<Display>& displays) {
@@ -128,7 +128,7 @@ std::optional<StoredResult> whole_result(Darkroom& darkroom, const std::string& 
 std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::string& content,
                                                 const std::string& request,
                                                 const ImageQuery& query) {
-  auto& [catalog, colors, store, artifacts, busy] = darkroom;
+  auto& [catalog, colors, store, artifacts, metrics, busy] = darkroom;
   const auto checked = image_form(query, colors.displays());
   if (const auto* problem = std::get_if<Problem>(&checked)) return *problem;
   const auto& form = std::get<ImageForm>(checked);
@@ -147,7 +147,7 @@ std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::s
   const std::string& original = result->image;
   const bool as_stored =
       !redeveloped && form.format == ImageFormat::exr && form.colorspace == colorspaces[0];
-  std::string artifact = as_stored ? original : derived_name(form);
+  std::string artifact = as_stored ? original : "derived-" + form_name(form);
   if (redeveloped)
     artifact =
         std::string(redeveloped_prefix) + content_hash(redeveloped->request) + '-' + artifact;
@@ -164,6 +164,7 @@ std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::s
               read_explorable(artifacts.path(content, explorable_name(original)));
           image = develop_explorable(stored.film, redeveloped->absorption.absorber,
                                      redeveloped->absorption.sigma_a_peak);
+          metrics.count_developed_image();
         } else {
           image = read_image(artifacts.path(content, original));
         }

@@ -13,6 +13,7 @@
 #include "renderer/image_io.h"
 #include "server/artifact_store.h"
 #include "server/job_store.h"
+#include "server/metrics.h"
 
 namespace translucube::server {
 
@@ -30,6 +31,9 @@ struct ImageForm {
   std::string display, view;  ///< where the format is for a display
   std::string colorspace;     ///< where it is scene-linear
 };
+
+/// The form as a file's name: "sRGB-plain.png".
+std::string form_name(const ImageForm& form);
 
 /// Checks the query against what there is.
 std::variant<ImageForm, api::Problem> image_form(const ImageQuery& query,
@@ -54,6 +58,7 @@ struct Darkroom {
   const ColorConfig& colors;
   JobStore& store;
   ArtifactStore& artifacts;
+  Metrics& metrics;
   std::mutex busy{};
 };
 

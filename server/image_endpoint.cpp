@@ -101,4 +101,9 @@ HttpResponse get_point_image(Endpoints& endpoints, const HttpRequest& request, c
   });
 }
 
+HttpResponse get_sheet(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
+  return image_response(
+      request, [&](const ImageQuery& query) { return endpoints.service.sheet(ids.id, query); });
+}
+
 }  // namespace translucube::server

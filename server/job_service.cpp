@@ -51,7 +51,13 @@ Result<Submission> JobService::submit(std::string_view document,
     auto outcome = accepted<Submitted>(store_.submit(job));
     if (auto* problem = std::get_if<Problem>(&outcome)) return std::move(*problem);
     const auto& submitted = std::get<Submitted>(outcome);
-    if (submitted.created) workers_->wake();
+    if (submitted.created) {
+      if (submitted.job.cached)
+        metrics_.count_cache_hit();
+      else
+        metrics_.count_cache_miss();
+      workers_->wake();
+    }
     return Submission{status_of(submitted.job), submitted.created};
   });
 }

@@ -52,11 +52,11 @@ struct ListQuery {
 };
 
 /// Accepts, reports, cancels and removes renders and sweeps, and owns the workers that trace them.
-/// Safe to share by threads. The catalog, colours and stores outlive it.
+/// Safe to share by threads. The catalog, colours, stores and metrics outlive it.
 class JobService {
  public:
   JobService(const api::Catalog& catalog, const ColorConfig& colors, JobStore& store,
-             ArtifactStore& artifacts, Engine engine = {});
+             ArtifactStore& artifacts, Metrics& metrics, Engine engine = {});
   ~JobService();
 
   // Renders (job_service.cpp).
@@ -82,6 +82,9 @@ class JobService {
   /// `point`: a client's text.
   Result<ImageFile> point_image(const std::string& id, const std::string& point,
                                 const ImageQuery& query);
+
+  /// The contact sheet, of what is there so far.
+  Result<ImageFile> sheet(const std::string& id, const ImageQuery& query);
 
   // Changes (job_service_changes.cpp).
   /// Calls `look` now and after every change, until it returns true, the time is over or the
@@ -115,6 +118,7 @@ class JobService {
   const ColorConfig& colors_;
   JobStore& store_;
   ArtifactStore& artifacts_;
+  Metrics& metrics_;
 
   mutable std::mutex mutex_;
   std::condition_variable change_;

@@ -46,19 +46,21 @@ std::optional<Problem> no_picture(api::JobState state) {
 }
 
 JobService::JobService(const api::Catalog& catalog, const ColorConfig& colors, JobStore& store,
-                       ArtifactStore& artifacts, Engine engine)
+                       ArtifactStore& artifacts, Metrics& metrics, Engine engine)
     : catalog_(catalog),
       colors_(colors),
       store_(store),
       artifacts_(artifacts),
-      darkroom_{catalog, colors, store, artifacts} {
+      metrics_(metrics),
+      darkroom_{catalog, colors, store, artifacts, metrics} {
   clean_artifacts();
-  workers_ = std::make_unique<WorkerPool>(
-      Workshop{catalog, store, artifacts, std::move(engine), catalog.server.threads_per_worker},
-      catalog.server.workers, [this] {
-        keep_within_quota();
-        changed();
-      });
+  workers_ =
+      std::make_unique<WorkerPool>(Workshop{catalog, store, artifacts, metrics, std::move(engine),
+                                            catalog.server.threads_per_worker},
+                                   catalog.server.workers, [this] {
+                                     keep_within_quota();
+                                     changed();
+                                   });
 }
 
 JobService::~JobService() { shut_down(); }

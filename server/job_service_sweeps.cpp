@@ -1,10 +1,10 @@
 #include <charconv>
-#include <map>
 
 #include "api/parse.h"
 #include "api/sweep.h"
 #include "server/content.h"
 #include "server/job_service_parts.h"
+#include "server/sheet_artifact.h"
 
 namespace translucube::server {
 namespace {
@@ -177,6 +177,14 @@ Result<ImageFile> JobService::point_image(const std::string& id, const std::stri
     return image_artifact(
         darkroom_, picture->content,
         api::canonical_json(api::point_request(std::get<api::Sweep>(sweep), number)), query);
+  });
+}
+
+Result<ImageFile> JobService::sheet(const std::string& id, const ImageQuery& query) {
+  return guarded<Result<ImageFile>>([&]() -> Result<ImageFile> {
+    const auto status = get_sweep(id);
+    if (const auto* problem = std::get_if<Problem>(&status)) return *problem;
+    return sheet_artifact(darkroom_, std::get<api::SweepStatus>(status), query);
   });
 }
 

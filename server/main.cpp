@@ -50,6 +50,20 @@ int main(int argc, char** argv) {
   render_verb->add_option("--sample", render.sample, "Which sample of the pixel")
       ->needs(pixel_option);
 
+  SweepOptions sweep;
+  CLI::App* sweep_verb = app.add_subcommand("sweep", "Renders a sweep over the cube to a folder");
+  sweep_verb->add_option("request", sweep.request, "The sweep, JSON; - reads standard input")
+      ->required();
+  CLI::Option* folder = sweep_verb->add_option(
+      "-o,--output", sweep.folder, "A folder for the pictures, the contact sheet and sweep.json");
+  sweep_verb->add_flag("--dry-run", sweep.dry_run, "Only counts points and traced images")
+      ->excludes(folder);
+  sweep_verb->add_option("--threads", sweep.threads, "At most this many threads; 0: all cores")
+      ->check(CLI::Range(0, 4096));
+  sweep_verb->add_option("--config", sweep.config, "Another service.json");
+  sweep_verb->add_option("--display", sweep.display, "For PNG");
+  sweep_verb->add_option("--view", sweep.view, "For PNG");
+
   DevelopOptions develop;
   CLI::App* develop_verb =
       app.add_subcommand("develop", "Develops an explorable film for another absorber");
@@ -105,6 +119,13 @@ int main(int argc, char** argv) {
   if (token_verb->parsed()) return run_token(token_name);
   if (serve_verb->parsed()) return run_serve(serve);
   if (appearance_verb->parsed()) return run_appearance(appearance);
+  if (sweep_verb->parsed()) {
+    if (sweep.folder.empty() && !sweep.dry_run) {
+      std::cerr << "-o: a folder is needed\n";
+      return exit_bad_request;
+    }
+    return run_sweep(sweep);
+  }
   if (develop_verb->parsed()) return run_develop(develop);
   if (pixel_option->count() > 0) {
     render.pixel = pixel_of(pixel);

@@ -40,11 +40,11 @@ Family<Histogram>& histograms(Registry& registry, const char* name, const char* 
 }
 
 void add_gauge(std::vector<MetricFamily>& all, const char* name, const char* help,
-               const std::map<std::string, std::uint64_t>& by_state) {
+               const char* label, const std::map<std::string, std::uint64_t>& counts) {
   MetricFamily family{name, help, prometheus::MetricType::Gauge, {}};
-  for (const auto& [state, count] : by_state) {
+  for (const auto& [value, count] : counts) {
     prometheus::ClientMetric metric;
-    metric.label.push_back({"state", state});
+    metric.label.push_back({label, value});
     metric.gauge.value = static_cast<double>(count);
     family.metric.push_back(std::move(metric));
   }
@@ -83,9 +83,10 @@ struct Metrics::Impl {
   Counter& camera_samples = counters(registry, "translucube_camera_samples_total",
                                      "Samples of pixels traced: one camera ray each.")
                                 .Add({});
-  Counter& paths = counters(registry, "translucube_paths_total",
-                            "Light paths traced; a camera sample splits into several.")
-                       .Add({});
+  Counter& path_events = counters(registry, "translucube_path_events_total",
+                                  "Events of light paths: flights inside bodies, boundary events "
+                                  "and connections to the environment.")
+                             .Add({});
   Counter& nan_samples = counters(registry, "translucube_nan_samples_total",
                                   "Samples that were no finite number: a fault of the renderer.")
                              .Add({});
@@ -117,8 +118,15 @@ struct Metrics::Impl {
       spdlog::error("the store's figures are missing from a scrape: {}", error.what());
       return;
     }
-    add_gauge(all, "translucube_renders", "Renders in the store, by state.", store.renders);
-    add_gauge(all, "translucube_tasks", "Tasks in the store, by state.", store.tasks);
+    add_gauge(all, "translucube_renders", "Renders and traced images of sweeps, by state.", "state",
+              store.renders);
+    add_gauge(all, "translucube_sweeps", "Sweeps, by state.", "state", store.sweeps);
+    add_gauge(all, "translucube_tasks_waiting", "Passes that wait for a worker, by priority.",
+              "priority", store.tasks);
+    add_gauge(all, "translucube_results", "Finished pictures that are kept.",
+              static_cast<double>(store.results));
+    add_gauge(all, "translucube_result_bytes", "What they take on the disk.",
+              static_cast<double>(store.result_bytes));
     add_gauge(all, "translucube_queue_depth", "Renders that wait for a worker.",
               static_cast<double>(store.queue_depth));
     add_gauge(all, "translucube_queue_oldest_age_seconds",
@@ -154,7 +162,7 @@ std::shared_ptr<void> Metrics::open_stream() {
 void Metrics::count_pass(const PassFigures& pass) {
   impl_->pass_seconds.Observe(pass.seconds);
   impl_->camera_samples.Increment(static_cast<double>(pass.camera_samples));
-  impl_->paths.Increment(static_cast<double>(pass.paths));
+  impl_->path_events.Increment(static_cast<double>(pass.path_events));
   impl_->nan_samples.Increment(static_cast<double>(pass.nan_samples));
 }
 

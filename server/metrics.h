@@ -11,16 +11,20 @@ namespace translucube::server {
 
 /// What the store holds at the moment of a scrape.
 struct StoreGauges {
-  std::map<std::string, std::uint64_t> renders;  ///< by state
-  std::map<std::string, std::uint64_t> tasks;    ///< by state
+  std::map<std::string, std::uint64_t> renders;  ///< by state; images of sweeps among them
+  std::map<std::string, std::uint64_t> sweeps;   ///< by state
+  std::map<std::string, std::uint64_t> tasks;    ///< that wait, by priority
   std::uint64_t queue_depth = 0;                 ///< renders that wait for a worker
   double oldest_queued_age_s = 0;                ///< 0 where none waits
+  std::uint64_t results = 0, result_bytes = 0;   ///< finished pictures that are kept
 };
 
 /// What one pass over an image did.
 struct PassFigures {
   double seconds = 0;
-  std::uint64_t camera_samples = 0, paths = 0, nan_samples = 0;
+  std::uint64_t camera_samples = 0;
+  std::uint64_t path_events = 0;  ///< flights, boundary events and connections
+  std::uint64_t nan_samples = 0;
 };
 
 /// The service's own figures for Prometheus. Safe to share by threads; counting takes no lock that

@@ -120,6 +120,12 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
     if (!workshop_.store.release(task)) tidy(task.job_id);
     return;
   }
+  if (!stored) {
+    const TraceCounters& counters = pass->counters;
+    workshop_.metrics.count_pass(
+        {task_seconds, counters.camera_samples,
+         counters.flights + counters.boundary_events + counters.connections, counters.nan_samples});
+  }
 
   if (!stored && task_seconds > seconds_between_checkpoints)
     workshop_.artifacts.write_pass(task.job_id, *pass);
@@ -167,6 +173,7 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
     forget();
     // Another job may have made the same pictures since this one was accepted.
     if (workshop_.store.finish_from_results(task)) {
+      workshop_.metrics.count_cache_hit();
       workshop_.artifacts.remove_all(task.job_id);
       return false;
     }
@@ -261,10 +268,15 @@ void TaskRunner::finish(const Task& task, double task_seconds, bool with_pass) {
   const TaskResult result{task_seconds, progress_of(hand_.film, hand_.job.quality(), seconds)};
   const bool finished = workshop_.store.finish(task, result, with_pass, stats, results);
   discard(results);
-  if (finished)
+  if (finished) {
+    workshop_.metrics.count_render(seconds);
+    workshop_.metrics.count_traced_image();
+    for (std::size_t lane = 0; lane < results.size(); ++lane)
+      workshop_.metrics.count_developed_image();
     workshop_.artifacts.remove_all(task.job_id);
-  else
+  } else {
     tidy(task.job_id);
+  }
   forget();
 }
 

@@ -9,6 +9,7 @@
 #include "server/artifact_store.h"
 #include "server/engine.h"
 #include "server/job_store.h"
+#include "server/metrics.h"
 #include "server/traced_job.h"
 
 namespace translucube::server {
@@ -18,6 +19,7 @@ struct Workshop {
   const api::Catalog& catalog;
   JobStore& store;
   ArtifactStore& artifacts;
+  Metrics& metrics;
   Engine engine;
   int threads = 0;  ///< for each render; 0: all cores
 };

@@ -120,7 +120,7 @@ class TestService {
         data(folder),
         store(data.store_file(), options.store),
         artifacts(data.artifacts()),
-        service(catalog, colors, store, artifacts, std::move(engine)) {}
+        service(catalog, colors, store, artifacts, metrics, std::move(engine)) {}
 
   api::RenderStatus submit(const std::string& document, std::optional<std::string> key = {}) {
     auto result = service.submit(document, key);
@@ -167,6 +167,7 @@ class TestService {
   DataFolder data;
   JobStore store;
   ArtifactStore artifacts;
+  Metrics metrics;
   JobService service;
 
  private:

@@ -38,7 +38,7 @@ TEST(MetricsTest, CountsWhatItIsTold) {
        R"(translucube_http_request_duration_seconds_count{method="GET",route="/v1/renders/{id}"} 2)",
        "translucube_pass_duration_seconds_count 2", "translucube_pass_duration_seconds_sum 6",
        "translucube_render_duration_seconds_sum 9", "translucube_camera_samples_total 200",
-       "translucube_paths_total 500", "translucube_nan_samples_total 1",
+       "translucube_path_events_total 500", "translucube_nan_samples_total 1",
        R"(translucube_cache_lookups_total{result="hit"} 1)",
        R"(translucube_cache_lookups_total{result="miss"} 1)",
        R"(translucube_images_total{origin="traced"} 1)",
@@ -53,18 +53,18 @@ TEST(MetricsTest, TheStoreIsAskedAtEachScrape) {
   int scrapes = 0;
   metrics.set_store_gauges([&] {
     ++scrapes;
-    return StoreGauges{{{"queued", 3}, {"running", 1}}, {{"running", 2}}, 3, 4.5};
+    return StoreGauges{{{"queued", 3}, {"running", 1}}, {{"running", 1}}, {{"batch", 2}}, 3, 4.5};
   });
   std::string text = metrics.text();
   for (const char* line :
        {R"(translucube_renders{state="queued"} 3)", R"(translucube_renders{state="running"} 1)",
-        R"(translucube_tasks{state="running"} 2)", "translucube_queue_depth 3",
+        R"(translucube_tasks_waiting{priority="batch"} 2)", "translucube_queue_depth 3",
         "translucube_queue_oldest_age_seconds 4.5"})
     EXPECT_THAT(text, HasSubstr(line + std::string("\n")));
   metrics.set_store_gauges([&]() -> StoreGauges { throw std::runtime_error("locked"); });
   text = metrics.text();
   EXPECT_THAT(text, Not(HasSubstr("translucube_queue_depth")));
-  EXPECT_THAT(text, HasSubstr("translucube_paths_total 0\n"));
+  EXPECT_THAT(text, HasSubstr("translucube_path_events_total 0\n"));
   EXPECT_EQ(scrapes, 1);
 }
 
@@ -79,7 +79,7 @@ TEST(MetricsTest, StreamsAreCountedWhileTheyAreOpen) {
 TEST(MetricsTest, EveryNameHasItsHelpAndType) {
   Metrics metrics;
   metrics.count_request("GET", "/livez", 200, 0.1);
-  metrics.set_store_gauges([] { return StoreGauges{{{"queued", 1}}, {{"queued", 1}}, 1, 1}; });
+  metrics.set_store_gauges([] { return StoreGauges{{{"queued", 1}}, {{"queued", 1}}, {{"batch", 1}}, 1, 1}; });
   std::istringstream lines(metrics.text());
   std::set<std::string> helped, typed;
   for (std::string line; std::getline(lines, line);) {

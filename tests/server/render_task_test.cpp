@@ -222,8 +222,8 @@ TEST(RenderTaskTest, APassThatTwoWorkersTraceCountsOnce) {
     TestService tested(undisturbed.path(), renderer.engine());
     expected = tested.exr(tested.wait(tested.submit(small_request(24)).id).id);
   }
-  // In the middle of a pass the clock jumps an hour ahead: the lease has run out, and another
-  // worker takes the task while the first one goes on with it.
+  // In the middle of a pass the clock of the leases jumps an hour ahead: this one has run out, and
+  // another worker takes the task while the first one goes on with it.
   std::atomic<std::int64_t> jump = 0;
   std::atomic<bool> jumped = false;
   renderer.most_tracing = 0;
@@ -233,7 +233,7 @@ TEST(RenderTaskTest, APassThatTwoWorkersTraceCountsOnce) {
     EXPECT_TRUE(eventually([&] { return renderer.most_tracing == 2; }));
   };
   TestService tested(contended.path(), renderer.engine(),
-                     {2, {30'000, [&] { return system_clock_ms() + jump; }}});
+                     {2, {.lease_clock = [&] { return monotonic_clock_ms() + jump; }}});
   const std::string id = tested.submit(small_request(24)).id;
   const api::RenderStatus status = tested.wait(id);
   EXPECT_EQ(status.state, JobState::succeeded);

@@ -278,6 +278,7 @@ TEST(RoutesTest, ASecondServiceOnThePortIsRefused) {
 
 TEST(RoutesTest, ClientsThatWaitLeaveThreadsForProbes) {
   Served served(1, 8);
+  served.service.catalog.server.waiting_requests = 4;
   served.renderer.milliseconds_per_pass = 60'000;
   std::vector<std::jthread> waiting;
   for (int i = 0; i < 12; ++i)

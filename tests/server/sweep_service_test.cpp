@@ -1,0 +1,251 @@
+// Sweeps through the service: what is traced, what is developed, what is already there.
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "api/parse.h"
+#include "api/sweep.h"
+#include "tests/server/fixture.h"
+
+namespace translucube::server::test {
+namespace {
+
+using api::JobState;
+using nlohmann::json;
+
+std::string sweep_request(int samples, const std::string& axes, int size = 8) {
+  return R"({"base":)" + small_request(samples, 1, size) + R"(,"axes":)" + axes + "}";
+}
+const std::string some_axes = R"({"absorption":[0,0.5,1],"roughness":[0,0.5],"scattering":[0.4]})";
+
+struct Tested {
+  explicit Tested(Engine engine, ServiceOptions options = {})
+      : service(folder.path(), std::move(engine), options) {}
+
+  api::SweepStatus submit(const std::string& document, std::optional<std::string> key = {}) {
+    auto result = service.service.submit_sweep(document, key);
+    if (auto* problem = std::get_if<api::Problem>(&result)) {
+      ADD_FAILURE() << to_text(*problem);
+      return {};
+    }
+    return std::get<SweepSubmission>(result).status;
+  }
+  api::SweepStatus get(const std::string& id) {
+    return std::get<api::SweepStatus>(service.service.get_sweep(id));
+  }
+  api::SweepStatus wait(const std::string& id) {
+    service.service.watch(std::chrono::seconds(120), [&] { return is_end(get(id).state); });
+    return get(id);
+  }
+  std::string exr(const std::string& id, std::size_t point) {
+    auto result =
+        service.service.point_image(id, std::to_string(point), {ImageFormat::exr, {}, {}, {}});
+    if (auto* problem = std::get_if<api::Problem>(&result)) {
+      ADD_FAILURE() << to_text(*problem);
+      return {};
+    }
+    return std::get<ImageFile>(result).file->read_all();
+  }
+
+  TempFolder folder;
+  TestService service;
+};
+
+TEST(SweepServiceTest, TracesEachPairOfRoughnessAndScatteringOnce) {
+  FakeRenderer renderer;
+  Tested tested(renderer.engine());
+  const api::SweepStatus accepted = tested.submit(sweep_request(4, some_axes));
+  EXPECT_EQ(accepted.images.size(), 2u);
+  const api::SweepStatus sweep = tested.wait(accepted.id);
+  EXPECT_EQ(sweep.state, JobState::succeeded);
+  EXPECT_EQ(renderer.builds, 2);
+  const json answer = json::parse(to_json(sweep));
+  EXPECT_EQ(answer["points"], 6);
+  EXPECT_EQ(answer["counts"]["succeeded"], 6);
+  EXPECT_EQ(answer["stats"]["traced_images"], 2);
+  for (std::size_t point = 0; point < 6; ++point) EXPECT_FALSE(tested.exr(sweep.id, point).empty());
+}
+
+// The promise of design.md, with the real renderer: each lane, the infinite one among them, is the
+// render of its own.
+TEST(SweepServiceTest, APointHasTheBitsOfTheSameRequestAlone) {
+  Tested sweeps({}), alone({});
+  const std::string axes = R"({"absorption":[1,0,0.6],"roughness":[0,0.6],"scattering":[0,0.5,1]})";
+  const std::string document = sweep_request(5, axes, 20);
+  const api::SweepStatus sweep = sweeps.wait(sweeps.submit(document).id);
+  ASSERT_EQ(sweep.state, JobState::succeeded);
+  for (std::size_t point = 0; point < sweep.sweep.point_count(); ++point) {
+    const std::string request = canonical_json(api::point_request(sweep.sweep, point));
+    const api::RenderStatus render = alone.service.wait(alone.service.submit(request).id);
+    ASSERT_EQ(render.state, JobState::succeeded);
+    EXPECT_EQ(sweeps.exr(sweep.id, point), alone.service.exr(render.id)) << request;
+  }
+}
+
+TEST(SweepServiceTest, WhatIsThereIsNotRenderedAgain) {
+  FakeRenderer renderer;
+  Tested tested(renderer.engine());
+  const api::SweepStatus first = tested.wait(tested.submit(sweep_request(4, some_axes)).id);
+  const int passes = renderer.passes;
+  const api::SweepStatus again = tested.wait(tested.submit(sweep_request(4, some_axes)).id);
+  EXPECT_EQ(again.state, JobState::succeeded);
+  EXPECT_TRUE(std::ranges::all_of(again.images, &api::SweepImageStatus::cached));
+  const api::RenderStatus point =
+      tested.service.submit(canonical_json(api::point_request(first.sweep, 3)));
+  EXPECT_EQ(point.state, JobState::succeeded) << "at once";
+  EXPECT_TRUE(point.cached);
+  EXPECT_EQ(tested.service.exr(point.id), tested.exr(first.id, 3));
+  EXPECT_EQ(renderer.passes, passes);
+}
+
+TEST(SweepServiceTest, APointWhoseSamplesAnotherDecidedIsNotTakenForARenderAlone) {
+  FakeRenderer renderer;
+  Tested tested(renderer.engine());
+  const std::string document =
+      R"({"base":{"material":{"cube":{"absorption":0,"roughness":0,"scattering":0}},)"
+      R"("image":{"width":8,"height":8},"quality":{"relative_error":0.9}},)"
+      R"("axes":{"absorption":[0,0.9]}})";
+  const api::SweepStatus sweep = tested.wait(tested.submit(document).id);
+  const auto submit = [&](std::size_t point) {
+    return tested.service.submit(canonical_json(api::point_request(sweep.sweep, point)));
+  };
+  EXPECT_TRUE(submit(0).cached) << "it decided for itself";
+  EXPECT_FALSE(submit(1).cached);
+}
+
+TEST(SweepServiceTest, AFailedImageDoesNotSinkTheRest) {
+  FakeRenderer renderer;
+  renderer.before_build = [](const SceneSpec& spec) {
+    if (spec.material.coefficients.alpha > 0) throw std::runtime_error("no");
+  };
+  Tested tested(renderer.engine());
+  const api::SweepStatus sweep = tested.wait(tested.submit(sweep_request(4, some_axes)).id);
+  EXPECT_EQ(sweep.state, JobState::succeeded);
+  const json answer = json::parse(to_json(sweep));
+  EXPECT_EQ(answer["counts"]["succeeded"], 3);
+  EXPECT_EQ(answer["counts"]["failed"], 3);
+  for (const json& result : answer["results"]) {
+    EXPECT_EQ(result["image"].is_null(), result["roughness"] != 0);
+    EXPECT_EQ(result["error"].is_null(), result["roughness"] == 0);
+  }
+}
+
+TEST(SweepServiceTest, ACanceledSweepKeepsWhatIsFinished) {
+  FakeRenderer renderer;
+  renderer.before_pass = [&](const Pass&) {
+    if (renderer.builds == 2) renderer.milliseconds_per_pass = 60'000;
+  };
+  Tested tested(renderer.engine());
+  const std::string id = tested.submit(sweep_request(4, some_axes)).id;
+  ASSERT_TRUE(eventually([&] { return renderer.milliseconds_per_pass > 0; }));
+  EXPECT_EQ(std::get<api::SweepStatus>(tested.service.service.cancel_sweep(id)).state,
+            JobState::canceled);
+  ASSERT_TRUE(eventually([&] { return renderer.tracing == 0; }));
+  const json answer = json::parse(to_json(tested.get(id)));
+  EXPECT_EQ(answer["counts"]["succeeded"], 3);
+  EXPECT_EQ(answer["counts"]["canceled"], 3);
+  EXPECT_EQ(std::get<api::SweepStatus>(tested.service.service.cancel_sweep(id)).state,
+            JobState::canceled);
+  EXPECT_FALSE(tested.exr(id, 0).empty());
+}
+
+TEST(SweepServiceTest, RemovalTakesTheDataThatNothingElseRefersTo) {
+  FakeRenderer renderer;
+  Tested tested(renderer.engine());
+  const api::SweepStatus sweep = tested.wait(tested.submit(sweep_request(4, some_axes)).id);
+  const api::RenderStatus kept =
+      tested.service.submit(canonical_json(api::point_request(sweep.sweep, 2)));
+  EXPECT_FALSE(tested.service.service.remove_sweep(sweep.id));
+  EXPECT_EQ(tested.service.artifacts.ids(),
+            std::vector<std::string>{tested.service.content(kept.id)});
+  EXPECT_FALSE(tested.service.exr(kept.id).empty());
+  EXPECT_EQ(std::get<api::Problem>(tested.service.service.get_sweep(sweep.id)).code,
+            api::ProblemCode::not_found);
+  EXPECT_FALSE(tested.service.service.remove(kept.id));
+  EXPECT_TRUE(tested.service.artifacts.ids().empty());
+}
+
+TEST(SweepServiceTest, ASheetShowsWhatIsThereAndChangesWithIt) {
+  FakeRenderer renderer;
+  Tested tested(renderer.engine(), {0, {}});
+  const std::string id = tested.submit(sweep_request(4, some_axes, 64)).id;
+  const ImageQuery png{ImageFormat::png, {}, {}, {}};
+  const auto empty = std::get<ImageFile>(tested.service.service.sheet(id, png));
+  EXPECT_EQ(std::get<ImageFile>(tested.service.service.sheet(id, png)).etag, empty.etag);
+  JobStore& store = tested.service.store;
+  const Task task = *store.claim(Priority::batch);
+  const std::string content = store.pictures(task.job_id).at(0).content;
+  EXPECT_TRUE(store.fail(task, R"({"type":"x"})"));
+  const auto failed = std::get<ImageFile>(tested.service.service.sheet(id, png));
+  EXPECT_NE(failed.etag, empty.etag);
+  EXPECT_EQ(tested.service.artifacts.names(id).size(), 1u) << "the older one is gone";
+  EXPECT_TRUE(std::holds_alternative<ImageFile>(
+      tested.service.service.sheet(id, {ImageFormat::exr, {}, {}, "ACEScg"})));
+}
+
+TEST(SweepServiceTest, AShortRenderOvertakesASweep) {
+  FakeRenderer renderer;
+  renderer.milliseconds_per_pass = 30;
+  Tested tested(renderer.engine());
+  const std::string sweep =
+      tested.submit(sweep_request(4, R"({"roughness":{"from":0,"to":1,"count":20}})")).id;
+  const std::string render = tested.service.submit(small_request(4, 7)).id;
+  EXPECT_EQ(tested.service.wait(render).state, JobState::succeeded);
+  const json answer = json::parse(to_json(tested.get(sweep)));
+  EXPECT_GT(answer["counts"]["queued"], 10);
+}
+
+TEST(SweepServiceTest, OfSeveralWorkersOneIsKeptFreeOfSweeps) {
+  FakeRenderer renderer;
+  renderer.milliseconds_per_pass = 60'000;
+  Tested tested(renderer.engine(), {2, {}});
+  tested.submit(sweep_request(4, R"({"roughness":[0,0.5,1]})"));
+  ASSERT_TRUE(eventually([&] { return renderer.tracing == 1; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(renderer.tracing, 1);
+  const std::string render = tested.service.submit(small_request(4)).id;
+  EXPECT_TRUE(eventually([&] { return renderer.tracing == 2; }));
+  EXPECT_EQ(tested.service.state(render), JobState::running);
+  tested.service.service.shut_down();
+}
+
+TEST(SweepServiceTest, ARestartGoesOnWithTheSweep) {
+  const TempFolder folder;
+  FakeRenderer renderer;
+  std::string id;
+  {
+    TestService tested(folder.path(), renderer.engine(), {0, {}});
+    id = std::get<SweepSubmission>(tested.service.submit_sweep(sweep_request(4, some_axes), {}))
+             .status.id;
+  }
+  TestService tested(folder.path(), renderer.engine());
+  tested.service.watch(std::chrono::seconds(120), [&] {
+    return is_end(std::get<api::SweepStatus>(tested.service.get_sweep(id)).state);
+  });
+  EXPECT_EQ(std::get<api::SweepStatus>(tested.service.get_sweep(id)).state, JobState::succeeded);
+}
+
+TEST(SweepServiceTest, TheLeastRecentlyUsedPicturesMakeRoom) {
+  FakeRenderer renderer;
+  Tested tested(renderer.engine());
+  std::vector<std::string> ids;
+  for (int seed = 1; seed <= 6; ++seed)
+    ids.push_back(tested.service.wait(tested.service.submit(small_request(4, seed)).id).id);
+  const std::uint64_t all = tested.service.store.result_bytes();
+  tested.service.catalog.server.artifact_bytes = all;
+  ids.push_back(tested.service.wait(tested.service.submit(small_request(4, 7)).id).id);
+  ASSERT_TRUE(eventually([&] { return tested.service.store.result_bytes() <= all; }));
+  const auto first = tested.service.service.image(ids.front(), {});
+  ASSERT_TRUE(std::holds_alternative<api::Problem>(first));
+  EXPECT_EQ(std::get<api::Problem>(first).code, api::ProblemCode::gone);
+  EXPECT_FALSE(tested.service.exr(ids.back()).empty());
+  const api::RenderStatus again = tested.service.submit(small_request(4, 1));
+  EXPECT_FALSE(again.cached);
+  EXPECT_EQ(tested.service.wait(again.id).state, JobState::succeeded);
+  EXPECT_FALSE(tested.service.exr(ids.front()).empty()) << "made again for both";
+}
+
+}  // namespace
+}  // namespace translucube::server::test
