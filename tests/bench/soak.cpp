@@ -146,9 +146,11 @@ class Client {
 
   void look_at(const Order& order, const std::string& location) {
     std::string url = location;
-    if (order.path == "/v1/sweeps") url += "/points/" + std::to_string(pick(random_, 0, 8));
+    const bool sheet = order.path == "/v1/sweeps" && pick(random_, 0, 2) == 0;
+    if (order.path == "/v1/sweeps" && !sheet)
+      url += "/points/" + std::to_string(pick(random_, 0, 8));
     static const std::vector<std::string> forms{"exr", "png", "jpeg", "tiff"};
-    url += "/image?format=" + one_of(forms, random_);
+    url += sheet ? "/sheet" : "/image?format=" + one_of(forms, random_);
     if (order.explorable)
       url += "&absorption=0." + std::to_string(pick(random_, 0, 9)) + "&absorber=red-glass";
     const auto image = checked("image", http_.Get(url));

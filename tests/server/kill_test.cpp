@@ -62,11 +62,13 @@ void expect_replay(const Service& service, const std::string& location, const Ev
 
 std::vector<std::string> image_urls(const Siege::Job& job) {
   std::vector<std::string> urls;
-  if (job.order.path == "/v1/sweeps")
+  if (job.order.path == "/v1/sweeps") {
     for (int point = 0; point < 9; ++point)
       urls.push_back("/points/" + std::to_string(point) + "/image?format=exr");
-  else
+    urls.emplace_back("/sheet?format=png");
+  } else {
     urls.emplace_back("/image?format=exr");
+  }
   if (job.order.explorable) urls.emplace_back("/image?format=exr&absorption=0.7");
   return urls;
 }
