@@ -11,6 +11,8 @@ template <typename... Visitors>
 struct Overloaded : Visitors... {
   using Visitors::operator()...;
 };
+template <typename... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;  // clang 14 does not guess it
 
 /// The renderer's absorbers are relative to their peak: the peak's absorption is a coefficient.
 RgbAbsorber normalized(RgbAbsorber absorber) {

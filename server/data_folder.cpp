@@ -22,6 +22,13 @@ DataFolder::DataFolder(std::filesystem::path folder) : folder_(std::move(folder)
   if (!lock_) refuse(std::strerror(errno));
   if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0)
     refuse(errno == EWOULDBLOCK ? "another translucube serves it" : std::strerror(errno));
+  // An empty store would take all that lies there for rubbish.
+  const std::uintmax_t bytes = std::filesystem::file_size(store_file(), error);
+  const bool no_store = error || bytes == 0;
+  if (no_store && std::filesystem::is_directory(artifacts(), error) &&
+      !std::filesystem::is_empty(artifacts(), error))
+    refuse("the job store " + store_file().filename().string() +
+           " is lost or empty, but there are pictures: put it back, or remove them too");
 }
 
 }  // namespace translucube::server

@@ -1,10 +1,10 @@
 // Server-sent events (WHATWG HTML Living Standard, 9.2), replayed from the store: an id is the
 // number of an event of this render or sweep, also after a restart.
 
-#include <charconv>
 #include <chrono>
 
 #include "server/handlers.h"
+#include "server/http_negotiation.h"
 
 namespace translucube::server {
 namespace {
@@ -23,14 +23,6 @@ using EventsAfter = std::function<Result<JobService::Events>(std::uint64_t)>;
 std::string text_of(const Event& event) {
   return "id: " + std::to_string(event.number) + "\nevent: " + event.type +
          "\ndata: " + event.data + "\n\n";
-}
-
-/// Anything but a number of ours starts from the beginning.
-std::uint64_t last_event_id(const HttpRequest& request) {
-  const std::string_view text = request.header("last-event-id");
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? number : 0;
 }
 
 struct Stream {
@@ -66,7 +58,7 @@ struct Stream {
 };
 
 HttpResponse stream_of(Endpoints& endpoints, const HttpRequest& request, EventsAfter events_after) {
-  const std::uint64_t last = last_event_id(request);
+  const std::uint64_t last = last_event_id(request.header("last-event-id"));
   const auto first = events_after(last);
   if (const auto* problem = std::get_if<Problem>(&first)) return problem_response(*problem);
   const auto& found = std::get<JobService::Events>(first);

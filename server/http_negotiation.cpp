@@ -145,6 +145,10 @@ std::variant<WholeBody, ByteRange, UnsatisfiableRange> requested_range(std::stri
   return ByteRange{*first, std::min(last.value_or(size - 1), size - 1) - *first + 1};
 }
 
+std::uint64_t last_event_id(std::string_view text) {
+  return number<std::uint64_t>(text).value_or(0);
+}
+
 bool is_idempotency_key(std::string_view text) {
   return !text.empty() && text.size() <= 255 &&
          std::ranges::all_of(text, [](char c) { return c > ' ' && c < 127; });

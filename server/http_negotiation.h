@@ -36,6 +36,9 @@ struct UnsatisfiableRange {};
 std::variant<WholeBody, ByteRange, UnsatisfiableRange> requested_range(std::string_view range,
                                                                        std::uint64_t size);
 
+/// Last-Event-ID of an event stream. Anything but a number of ours starts from the beginning.
+std::uint64_t last_event_id(std::string_view text);
+
 /// An Idempotency-Key: 1 to 255 visible ASCII characters.
 bool is_idempotency_key(std::string_view text);
 

@@ -107,15 +107,19 @@ void make_room(ArtifactStore& artifacts, const std::string& content) {
     if (redeveloped(name)) artifacts.remove(content, name);
 }
 
-/// The result, if its picture lies there whole. What a broken disk took is forgotten, so that it
-/// can be made again.
+/// What a broken disk took can be made again once it is forgotten.
+void forget(Darkroom& darkroom, const std::string& content) {
+  if (darkroom.store.remove_result(content)) darkroom.artifacts.remove_all(content);
+}
+
+/// The result, if its picture lies there whole.
 std::optional<StoredResult> whole_result(Darkroom& darkroom, const std::string& content) {
   std::optional<StoredResult> result = darkroom.store.find_result(content);
   if (!result) return std::nullopt;
   const auto file = darkroom.artifacts.open(content, result->image);
   if (file && (!result->image_bytes || *result->image_bytes == file->size())) return result;
   spdlog::error("result {}: its picture is not whole", content);
-  if (darkroom.store.remove_result(content)) darkroom.artifacts.remove_all(content);
+  forget(darkroom, content);
   return std::nullopt;
 }
 
@@ -134,11 +138,11 @@ std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::s
     if (auto* problem = std::get_if<Problem>(&made)) return std::move(*problem);
     redeveloped = std::get<api::Redeveloped>(std::move(made));
   }
+  const Problem gone{ProblemCode::gone,
+                     "The picture was removed to make room; the same request makes it again.",
+                     {}};
   const std::optional<StoredResult> result = whole_result(darkroom, content);
-  if (!result)
-    return Problem{ProblemCode::gone,
-                   "The picture was removed to make room; the same request makes it again.",
-                   {}};
+  if (!result) return gone;
   store.touch_result(content);
   const std::string& original = result->image;
   const bool as_stored =
@@ -176,9 +180,10 @@ std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::s
         file = artifacts.open(content, artifact);
       } catch (const ImageError& error) {
         spdlog::error("result {}: {}", content, error.what());
+        forget(darkroom, content);
       }
   }
-  if (!file) return Problem{ProblemCode::internal, "The image of the render cannot be read.", {}};
+  if (!file) return gone;
   return ImageFile{file, std::string(mime_type(form.format)),
                    '"' + content_hash(content + artifact + file->version()) + '"'};
 }

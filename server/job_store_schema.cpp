@@ -101,6 +101,15 @@ INSERT INTO results SELECT id, image, NULL, COALESCE(stats, '{}'), 0, finished_m
 ALTER TABLE jobs DROP COLUMN image;
 )sql";
 
+/// SQLite reads the bytes that its last page lacks as zeros.
+bool ends_in_a_page(sql::Connection& writer, const std::filesystem::path& file) {
+  Statement page_size(writer, "PRAGMA page_size");
+  std::error_code in_memory;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, in_memory);
+  return in_memory ||
+         (page_size.step() && bytes % static_cast<std::uintmax_t>(page_size.integer(0)) == 0);
+}
+
 }  // namespace
 
 void prepare_schema(sql::Connection& writer, const std::filesystem::path& file) {
@@ -113,6 +122,9 @@ void prepare_schema(sql::Connection& writer, const std::filesystem::path& file) 
     throw StoreError(StoreError::Kind::unavailable,
                      "the job store " + file.string() + " was written by a newer translucube");
   if (version > 0) {
+    if (!ends_in_a_page(writer, file))
+      throw StoreError(StoreError::Kind::corrupt,
+                       "the job store " + file.string() + " is corrupt: it was cut short");
     Statement check(writer, "PRAGMA quick_check(1)");
     if (!check.step() || check.text(0) != "ok")
       throw StoreError(StoreError::Kind::corrupt,

@@ -64,6 +64,7 @@ class Process {
     return false;
   }
 
+  pid_t pid() const { return pid_; }
   void kill(int signal) const { ::kill(pid_, signal); }
 
   /// A line of standard output, "" at its end.

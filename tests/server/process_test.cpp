@@ -120,6 +120,52 @@ TEST(ProcessTest, ATerminatedServiceDrainsAndItsRenderGoesOnAfterwards) {
   EXPECT_EQ(service.client().Post(location + "/cancel", "", "")->status, 200);
 }
 
+/// The states that a probe sees, one after the other, until the service is gone.
+std::vector<int> probes_until_gone(int port) {
+  std::vector<int> seen;
+  httplib::Client client("127.0.0.1", port);
+  client.set_keep_alive(true);
+  while (const auto ready = client.Get("/readyz"))
+    if (seen.empty() || seen.back() != ready->status) seen.push_back(ready->status);
+  return seen;
+}
+
+TEST(ProcessTest, ATerminationEndsStreamsAndTheRenderHasTheBitsOfAnUndisturbedOne) {
+  const TempFolder folder;
+  write_file(folder / "request.json", steady_request());
+  ASSERT_EQ(run_translucube({"render", (folder / "request.json").string(), "-o",
+                             (folder / "alone.exr").string()})
+                .status,
+            0);
+  std::string location;
+  {
+    Service service(folder / "data");
+    const auto posted = service.client().Post("/v1/renders", steady_request(), "application/json");
+    location = posted->get_header_value("Location");
+    std::atomic<bool> streaming = false;
+    const std::jthread stream([&] {
+      service.client().Get(location + "/events",
+                           [&](const char*, std::size_t) { return streaming = true; });
+    });
+    std::vector<int> seen;
+    std::jthread probe([&] { seen = probes_until_gone(service.port()); });
+    ASSERT_TRUE(eventually(
+        [&] { return streaming && service.get(location)["progress"]["samples"] >= 40; }));
+    const auto start = std::chrono::steady_clock::now();
+    service.process().kill(SIGTERM);
+    EXPECT_EQ(service.process().wait(), 0) << service.process().errors();
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+    probe.join();
+    EXPECT_THAT(seen, testing::AnyOf(testing::ElementsAre(200), testing::ElementsAre(200, 503)))
+        << "once it is not ready, it stays so";
+  }
+  Service service(folder / "data");
+  EXPECT_LT(double(service.get(location)["progress"]["samples"]), steady_samples);
+  ASSERT_TRUE(eventually([&] { return state_of(service, location) == "succeeded"; }));
+  write_file(folder / "served.exr", service.client().Get(location + "/image?format=exr")->body);
+  EXPECT_EQ(pixels(folder / "served.exr"), pixels(folder / "alone.exr"));
+}
+
 TEST(ProcessTest, AServiceThatCannotStartSaysWhyAndEnds) {
   const TempFolder folder;
   Service service(folder / "data");

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Seeds for the fuzzers, from the malformed bodies and the OpenAPI document's examples.
+make_corpus.py FOLDER writes FOLDER/{render_request,sweep_request,headers}/..."""
+
+import json
+import pathlib
+import shutil
+import sys
+
+root = pathlib.Path(__file__).resolve().parents[2]
+out = pathlib.Path(sys.argv[1])
+examples = []
+
+
+def find_examples(node):
+    if isinstance(node, dict):
+        for key, value in node.items():
+            if key == "examples" and isinstance(value, dict):
+                examples.extend(e["value"] for e in value.values() if "value" in e)
+            elif key == "example":
+                examples.append(value)
+            else:
+                find_examples(value)
+    elif isinstance(node, list):
+        for value in node:
+            find_examples(value)
+
+
+find_examples(json.loads((root / "api/openapi.json").read_text()))
+requests = [e for e in examples if isinstance(e, dict) and "material" in e]
+sweeps = [e for e in examples if isinstance(e, dict) and "base" in e]
+sweeps += [{"base": request, "axes": axes} for request in requests for axes in (
+    {"absorption": [0, 0.5, 1]},
+    {"absorption": {"from": 0, "to": 1, "count": 3}, "scattering": [0.2, 0.4]},
+    {"roughness": [0, 1], "absorbers": []})]
+sweeps += [{"base": request, "absorbers": ["red-glass", {"wavelengths_nm": [400, 700],
+                                                         "values": [1, 2]}]}
+           for request in requests]
+
+header_lines = [
+    "Accept: image/png;q=0.5, image/x-exr, */*;q=0.1",
+    'Accept: image/tiff;level="a,b;q=1";q=1',
+    "Range: bytes=0-99", "Range: bytes=-5", "Range: bytes=10-", "Range: bytes=5-1,7-9",
+    "Range: bytes=18446744073709551615-",
+    "Prefer: respond-async, wait=10", 'Prefer: wait="3"; x=1', "Prefer: wait=99999999999",
+    'If-None-Match: "abc", W/"some"', "If-None-Match: *",
+    "Idempotency-Key: 8e03978e-40d5-43dd-bc93-6894a57f9324",
+    "Last-Event-ID: 17", "Last-Event-ID: -1",
+    "Content-Length: 12", "Content-Length: 12\nContent-Length: 12",
+    "Transfer-Encoding: chunked", "Transfer-Encoding: chunked\nContent-Length: 3",
+    "Content-Type: application/json; charset=utf-8",
+    "Method: POST\nHost: localhost:8080\nOrigin: http://localhost:8080",
+    "Method: POST\nHost: [::1]:8080\nOrigin: https://evil.example",
+    "Method: POST\nHost: 127.0.0.1\nSec-Fetch-Site: cross-site",
+    "Method: GET\nHost: render.example:8080\nAuthorization: Bearer 0123456789abcdef",
+]
+
+
+def write(name, seeds):
+    folder = out / name
+    folder.mkdir(parents=True, exist_ok=True)
+    for number, seed in enumerate(seeds):
+        (folder / f"seed-{number:03}").write_bytes(seed)
+
+
+# Of the bodies that are far too long, the shorter ones do.
+bodies = [path.read_bytes() for path in sorted((root / "tests/api/malformed").glob("*.json"))]
+bodies = [body for body in bodies if len(body) < 4096]
+as_bytes = lambda documents: [json.dumps(d, separators=(",", ":")).encode() for d in documents]
+shutil.rmtree(out, ignore_errors=True)
+write("render_request", as_bytes(requests) + bodies)
+write("sweep_request", as_bytes(sweeps) + [b'{"base":' + body + b"}" for body in bodies[::4]])
+write("headers", [line.encode() for line in header_lines])
