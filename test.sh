@@ -14,6 +14,8 @@ parts=${PARTS:-release asan tsan fuzz}
 began=$SECONDS
 bash .ci/install_packages.sh
 export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+# What one clone has compiled serves the others.
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 times="packages $((SECONDS - began)) s"
 summaries=""
 failed=0

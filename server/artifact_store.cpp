@@ -89,6 +89,11 @@ void ArtifactStore::remove_all(const std::string& id) {
     throw FileError("cannot remove " + (root_ / id).string() + ": " + error.message());
 }
 
+void ArtifactStore::remove_if_empty(const std::string& id) {
+  std::error_code not_empty;
+  fs::remove(root_ / id, not_empty);
+}
+
 std::vector<std::string> ArtifactStore::ids() const {
   std::vector<std::string> ids;
   for (const fs::path& folder : entries(root_))

@@ -33,6 +33,7 @@ class ArtifactStore {
   std::vector<std::string> names(const std::string& id) const;
   void remove(const std::string& id, const std::string& name);
   void remove_all(const std::string& id);
+  void remove_if_empty(const std::string& id);
   std::vector<std::string> ids() const;
   std::uint64_t bytes(const std::string& id) const;  ///< of all files in the folder
   void check_writable();

@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -87,6 +88,8 @@ StoreGauges gauges_of(const QueueGauges& queue) {
 }
 
 int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
+  // An arena for each of a hundred threads would keep what any of them once needed.
+  ::mallopt(M_ARENA_MAX, 4);
   prepare_image_codecs();
   const api::Catalog catalog = configured(options);
   set_up_log(catalog.server.log_format);

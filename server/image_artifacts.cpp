@@ -89,6 +89,14 @@ void write_form(const std::filesystem::path& file, Image image, const ImageForm&
   write_image(file, image, form.format, metadata);
 }
 
+void remove_files(ArtifactStore& artifacts, const StoredResult& result) {
+  for (const std::string& name : artifacts.names(result.content))
+    if (name == result.image || name == explorable_name(result.image) ||
+        name.starts_with("derived-"))
+      artifacts.remove(result.content, name);
+  artifacts.remove_if_empty(result.content);
+}
+
 std::string explorable_name(const std::string& image) { return "explorable-" + image; }
 
 namespace {
@@ -108,8 +116,8 @@ void make_room(ArtifactStore& artifacts, const std::string& content) {
 }
 
 /// What a broken disk took can be made again once it is forgotten.
-void forget(Darkroom& darkroom, const std::string& content) {
-  if (darkroom.store.remove_result(content)) darkroom.artifacts.remove_all(content);
+void forget(Darkroom& darkroom, const StoredResult& result) {
+  if (darkroom.store.remove_result(result)) remove_files(darkroom.artifacts, result);
 }
 
 /// The result, if its picture lies there whole.
@@ -119,7 +127,7 @@ std::optional<StoredResult> whole_result(Darkroom& darkroom, const std::string& 
   const auto file = darkroom.artifacts.open(content, result->image);
   if (file && (!result->image_bytes || *result->image_bytes == file->size())) return result;
   spdlog::error("result {}: its picture is not whole", content);
-  forget(darkroom, content);
+  forget(darkroom, *result);
   return std::nullopt;
 }
 
@@ -180,7 +188,7 @@ std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::s
         file = artifacts.open(content, artifact);
       } catch (const ImageError& error) {
         spdlog::error("result {}: {}", content, error.what());
-        forget(darkroom, content);
+        forget(darkroom, *result);
       }
   }
   if (!file) return gone;

@@ -52,6 +52,10 @@ struct ImageFile {
 /// The artifact that holds the path lengths of an explorable render, beside this image.
 std::string explorable_name(const std::string& image);
 
+/// Removes the files of a result that the store no longer has. A picture that was made anew
+/// meanwhile has another name and stays. Throws FileError.
+void remove_files(ArtifactStore& artifacts, const StoredResult& result);
+
 /// What makes pictures of other pictures. One at a time: each takes much memory.
 struct Darkroom {
   const api::Catalog& catalog;

@@ -98,7 +98,7 @@ Result<api::RenderStatus> JobService::cancel(const std::string& id) {
 }
 
 std::optional<Problem> JobService::remove(const std::string& id) {
-  using Unused = std::vector<std::string>;
+  using Unused = std::vector<StoredResult>;
   const auto result = guarded<Result<Unused>>([&]() -> Result<Unused> {
     const std::optional<Job> known = store_.find(id);
     if (!known || known->sweep_image) return no_such_render();
@@ -109,7 +109,7 @@ std::optional<Problem> JobService::remove(const std::string& id) {
   if (const auto* problem = std::get_if<Problem>(&result)) return *problem;
   workers_->stop_job(id);
   discard_files(id);
-  for (const std::string& content : std::get<Unused>(result)) discard_files(content);
+  for (const StoredResult& unused : std::get<Unused>(result)) discard_result(unused);
   changed();
   return std::nullopt;
 }

@@ -112,6 +112,7 @@ class JobService {
   void clean_artifacts();
   void keep_within_quota();
   void discard_files(const std::string& folder);
+  void discard_result(const StoredResult& result);
   void changed();
 
   const api::Catalog& catalog_;

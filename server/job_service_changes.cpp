@@ -150,9 +150,9 @@ void JobService::keep_within_quota() {
       bytes -= std::min(bytes, result.bytes - std::min(result.bytes, left));
     }
     for (const StoredResult& result : store_.least_recently_used(bytes > goal ? bytes - goal : 0)) {
-      if (!store_.remove_result(result.content)) continue;
+      if (!store_.remove_result(result)) continue;
       spdlog::info("result {} removed to make room", result.content);
-      discard_files(result.content);
+      discard_result(result);
     }
   } catch (const std::runtime_error& error) {
     spdlog::error("no room made: {}", error.what());
@@ -166,6 +166,14 @@ void JobService::discard_files(const std::string& folder) {
     artifacts_.remove_all(folder);
   } catch (const FileError& error) {
     spdlog::warn("{}: {}", folder, error.what());
+  }
+}
+
+void JobService::discard_result(const StoredResult& result) {
+  try {
+    remove_files(artifacts_, result);
+  } catch (const FileError& error) {
+    spdlog::warn("result {}: {}", result.content, error.what());
   }
 }
 

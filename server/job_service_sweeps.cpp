@@ -141,7 +141,7 @@ Result<api::SweepStatus> JobService::cancel_sweep(const std::string& id) {
 std::optional<Problem> JobService::remove_sweep(const std::string& id) {
   struct Removed {
     std::vector<SweepImageState> images;
-    std::vector<std::string> unused;
+    std::vector<StoredResult> unused;
   };
   const auto result = guarded<Result<Removed>>([&]() -> Result<Removed> {
     const std::vector<SweepImageState> images = store_.sweep_images(id);
@@ -155,7 +155,7 @@ std::optional<Problem> JobService::remove_sweep(const std::string& id) {
     workers_->stop_job(image.job_id);
     discard_files(image.job_id);
   }
-  for (const std::string& content : unused) discard_files(content);
+  for (const StoredResult& result_of_it : unused) discard_result(result_of_it);
   discard_files(id);
   changed();
   return std::nullopt;

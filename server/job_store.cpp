@@ -142,13 +142,13 @@ std::optional<Job> JobStore::cancel(const std::string& id) {
   return job;
 }
 
-std::optional<std::vector<std::string>> JobStore::remove(const std::string& id) {
+std::optional<std::vector<StoredResult>> JobStore::remove(const std::string& id) {
   const Lock lock(writer_->mutex);
   Transaction transaction(*writer_);
   const std::vector<std::string> contents = rows::contents_of(*writer_, "job_id = ?", id);
   Statement(*writer_, "DELETE FROM jobs WHERE id = ?").bind(id).run();
   if (writer_->changes() == 0) return std::nullopt;
-  const std::vector<std::string> unused = drop_unused_results(contents);
+  const std::vector<StoredResult> unused = drop_unused_results(contents);
   transaction.commit();
   return unused;
 }

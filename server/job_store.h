@@ -177,9 +177,9 @@ class JobStore {
   std::vector<Job> list(const JobFilter& filter) const;  ///< renders, newest first
   /// Ends the job if it has not ended. The job as it is then; empty if there is none.
   std::optional<Job> cancel(const std::string& id);
-  /// With its tasks, and the results that nothing else refers to: their contents, for their files.
+  /// With its tasks, and the results that nothing else refers to, which are told for their files.
   /// Empty if there is no such job.
-  std::optional<std::vector<std::string>> remove(const std::string& id);
+  std::optional<std::vector<StoredResult>> remove(const std::string& id);
   std::vector<Picture> pictures(const std::string& job_id) const;  ///< by lane
 
   // Sweeps (job_store_sweeps.cpp).
@@ -193,7 +193,7 @@ class JobStore {
   };
   std::optional<PointPicture> picture_of_point(const std::string& id, std::uint32_t point) const;
   std::optional<StoredSweep> cancel_sweep(const std::string& id);
-  std::optional<std::vector<std::string>> remove_sweep(const std::string& id);
+  std::optional<std::vector<StoredResult>> remove_sweep(const std::string& id);
 
   // Tasks (job_store_tasks.cpp).
   /// The oldest task of this priority that nobody holds, of `preferred` if that has one. Its job is
@@ -216,7 +216,7 @@ class JobStore {
   std::optional<StoredResult> find_result(const std::string& content) const;
   void touch_result(const std::string& content);  ///< it was used now
   void resize_result(const std::string& content, std::uint64_t bytes);
-  bool remove_result(const std::string& content);
+  bool remove_result(const StoredResult& result);  ///< false if it is not there, or another one is
   /// The results that were not used for longest and make up `bytes` or more, by their last use.
   std::vector<StoredResult> least_recently_used(std::uint64_t bytes) const;
   std::uint64_t result_bytes() const;
@@ -235,7 +235,7 @@ class JobStore {
                                            const std::string& id) const;
   bool queue_has_room(std::size_t jobs);
   void insert_pictures(const std::string& id, const std::vector<Picture>& lanes);
-  std::vector<std::string> drop_unused_results(const std::vector<std::string>& contents);
+  std::vector<StoredResult> drop_unused_results(const std::vector<std::string>& contents);
   bool holds(const Task& task);
   bool move(const std::string& id, api::JobState to);
   void follow_sweep(const std::string& sweep_id);

@@ -49,21 +49,23 @@ void JobStore::resize_result(const std::string& content, std::uint64_t bytes) {
       .run();
 }
 
-bool JobStore::remove_result(const std::string& content) {
+bool JobStore::remove_result(const StoredResult& result) {
   const Lock lock(writer_->mutex);
-  Statement(*writer_, "DELETE FROM results WHERE content = ?").bind(content).run();
+  Statement(*writer_, "DELETE FROM results WHERE content = ? AND image = ?")
+      .bind(result.content, result.image)
+      .run();
   return writer_->changes() > 0;
 }
 
-std::vector<std::string> JobStore::drop_unused_results(const std::vector<std::string>& contents) {
-  std::vector<std::string> unused;
+std::vector<StoredResult> JobStore::drop_unused_results(const std::vector<std::string>& contents) {
+  std::vector<StoredResult> unused;
   for (const std::string& content : contents) {
-    Statement(*writer_,
-              "DELETE FROM results WHERE content = ? AND NOT EXISTS "
-              "(SELECT 1 FROM pictures WHERE content = ?)")
-        .bind(content, content)
-        .run();
-    if (writer_->changes() > 0) unused.push_back(content);
+    Statement result(*writer_, std::string(select_result) +
+                                   "WHERE content = ? AND NOT EXISTS "
+                                   "(SELECT 1 FROM pictures WHERE pictures.content = ?)");
+    if (!result.bind(content, content).step()) continue;
+    unused.push_back(result_of(result));
+    Statement(*writer_, "DELETE FROM results WHERE content = ?").bind(content).run();
   }
   return unused;
 }

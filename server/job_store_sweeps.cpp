@@ -174,7 +174,7 @@ std::optional<StoredSweep> JobStore::cancel_sweep(const std::string& id) {
   return sweep;
 }
 
-std::optional<std::vector<std::string>> JobStore::remove_sweep(const std::string& id) {
+std::optional<std::vector<StoredResult>> JobStore::remove_sweep(const std::string& id) {
   const Lock lock(writer_->mutex);
   Transaction transaction(*writer_);
   const std::vector<std::string> contents =
@@ -182,7 +182,7 @@ std::optional<std::vector<std::string>> JobStore::remove_sweep(const std::string
   Statement(*writer_, "DELETE FROM jobs WHERE sweep_id = ?").bind(id).run();
   Statement(*writer_, "DELETE FROM sweeps WHERE id = ?").bind(id).run();
   if (writer_->changes() == 0) return std::nullopt;
-  const std::vector<std::string> unused = drop_unused_results(contents);
+  const std::vector<StoredResult> unused = drop_unused_results(contents);
   transaction.commit();
   return unused;
 }

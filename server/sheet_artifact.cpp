@@ -11,11 +11,21 @@ namespace {
 using api::Problem;
 using api::ProblemCode;
 
+std::optional<StoredResult> result_of(const Darkroom& darkroom, const api::SweepStatus& sweep,
+                                      std::uint32_t point) {
+  const auto picture = darkroom.store.picture_of_point(sweep.id, point);
+  return picture ? darkroom.store.find_result(picture->content) : std::nullopt;
+}
+
 /// What the sheet shows, beside its form: the points that are there, and why others are not.
-std::string states_of(const api::SweepStatus& sweep) {
+std::string states_of(const Darkroom& darkroom, const api::SweepStatus& sweep) {
   std::string states;
-  for (const api::SweepImageStatus& image : sweep.images)
-    states += static_cast<char>('0' + static_cast<int>(image.state));
+  for (const api::SweepImageStatus& image : sweep.images) {
+    states += name(image.state);
+    if (image.state != api::JobState::succeeded) continue;
+    for (const std::uint32_t point : image.points)
+      states += result_of(darkroom, sweep, point) ? '+' : '-';
+  }
   return states;
 }
 
@@ -27,8 +37,7 @@ void compose(Darkroom& darkroom, const api::SweepStatus& sweep, SweepSheet& shee
         sheet.mark(point, name(image.state));
         continue;
       }
-      const auto picture = darkroom.store.picture_of_point(sweep.id, point);
-      const auto result = picture ? darkroom.store.find_result(picture->content) : std::nullopt;
+      const auto result = result_of(darkroom, sweep, point);
       try {
         if (result)
           sheet.place(point, read_image(darkroom.artifacts.path(result->content, result->image)));
@@ -49,7 +58,8 @@ std::variant<ImageFile, Problem> sheet_artifact(Darkroom& darkroom, const api::S
   const auto checked = image_form(query, darkroom.colors.displays());
   if (const auto* problem = std::get_if<Problem>(&checked)) return *problem;
   const auto& form = std::get<ImageForm>(checked);
-  const std::string artifact = "sheet-" + content_hash(states_of(sweep)) + '-' + form_name(form);
+  const std::string artifact =
+      "sheet-" + content_hash(states_of(darkroom, sweep)) + '-' + form_name(form);
   ArtifactStore& artifacts = darkroom.artifacts;
 
   const std::lock_guard lock(darkroom.busy);

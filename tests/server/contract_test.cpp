@@ -153,7 +153,7 @@ void provoke_images(Contract& contract) {
 
   // Removed to make room.
   for (const StoredResult& result : busy.service.store.least_recently_used(1 << 30))
-    EXPECT_TRUE(busy.service.store.remove_result(result.content));
+    EXPECT_TRUE(busy.service.store.remove_result(result));
   busy.caller.call("getImage", 410, render);
   busy.caller.call("getPointImage", 410, sweep);
 
