@@ -1,5 +1,7 @@
 #include "api/render_status.h"
 
+#include <stdexcept>
+
 #include "api/status_json.h"
 
 namespace translucube::api {
@@ -7,37 +9,45 @@ namespace {
 
 using nlohmann::json;
 
-json status_object(const RenderStatus& status) {
-  const std::string self = "/v1/renders/" + status.id;
-  return {
-      {"id", status.id},
-      {"state", name(status.state)},
-      {"created_at", status.created_at},
-      {"started_at", value_or_null(status.started_at)},
-      {"finished_at", value_or_null(status.finished_at)},
-      {"progress", progress_object(status.progress)},
-      {"request", parsed(status.request, "the request of a render")},
-      {"material", parsed(status.material, "the material report of a render")},
-      {"stats", parsed_or_null(status.stats, "the stats of a render")},
-      {"error", parsed_or_null(status.error, "the error of a render")},
-      {"cached", status.cached},
-      {"links",
-       {{"self", self},
-        {"image", self + "/image"},
-        {"events", self + "/events"},
-        {"cancel", self + "/cancel"}}},
-  };
+/// What the store keeps as JSON text stands in the answer as it is: to build it anew from values
+/// would be most of the work of an answer. Throws std::invalid_argument if it is none.
+void append(std::string& object, const char* key, const std::optional<std::string>& text) {
+  if (text && !json::accept(*text)) throw std::invalid_argument(std::string("not JSON: ") + key);
+  object.insert(object.size() - 1, std::string(",\"") + key + "\":" + text.value_or("null"));
 }
 
 }  // namespace
 
-std::string to_json(const RenderStatus& status) { return status_object(status).dump(); }
+std::string to_json(const RenderStatus& status) {
+  const std::string self = "/v1/renders/" + status.id;
+  std::string object = json{{"id", status.id},
+                            {"state", name(status.state)},
+                            {"created_at", status.created_at},
+                            {"started_at", value_or_null(status.started_at)},
+                            {"finished_at", value_or_null(status.finished_at)},
+                            {"progress", progress_object(status.progress)},
+                            {"cached", status.cached},
+                            {"links",
+                             {{"self", self},
+                              {"image", self + "/image"},
+                              {"events", self + "/events"},
+                              {"cancel", self + "/cancel"}}}}
+                           .dump();
+  append(object, "request", status.request);
+  append(object, "material", status.material);
+  append(object, "stats", status.stats);
+  append(object, "error", status.error);
+  return object;
+}
 
 std::string render_list_json(const std::vector<RenderStatus>& renders,
                              const std::optional<std::string>& next_cursor) {
-  json list = json::array();
-  for (const RenderStatus& status : renders) list.push_back(status_object(status));
-  return json{{"renders", std::move(list)}, {"next_cursor", value_or_null(next_cursor)}}.dump();
+  std::string list = R"({"renders":[)";
+  for (const RenderStatus& status : renders) {
+    if (&status != &renders.front()) list += ',';
+    list += to_json(status);
+  }
+  return list + R"(],"next_cursor":)" + value_or_null(next_cursor).dump() + '}';
 }
 
 std::string stats_json(const RenderStats& stats) {

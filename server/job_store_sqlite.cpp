@@ -48,21 +48,39 @@ void Connection::execute(const std::string& statements) {
 
 int Connection::changes() const { return sqlite3_changes(handle_.get()); }
 
-void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+void FinalizeStatement::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+
+PreparedStatement Connection::take(std::string_view text) {
+  const auto idle = idle_.find(text);
+  if (idle != idle_.end() && !idle->second.empty()) {
+    PreparedStatement statement = std::move(idle->second.back());
+    idle->second.pop_back();
+    return statement;
+  }
+  sqlite3_stmt* statement = nullptr;
+  const int code = sqlite3_prepare_v3(handle_.get(), text.data(), static_cast<int>(text.size()),
+                                      SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
+  if (code != SQLITE_OK) fail(handle_.get(), code, "cannot read its tables");
+  return PreparedStatement(statement);
+}
+
+void Connection::give_back(std::string_view text, PreparedStatement statement) {
+  sqlite3_reset(statement.get());
+  sqlite3_clear_bindings(statement.get());
+  auto idle = idle_.find(text);
+  if (idle == idle_.end()) idle = idle_.try_emplace(std::string(text)).first;
+  idle->second.push_back(std::move(statement));
+}
 
 Statement::Statement(Connection& connection, std::string_view text)
-    : connection_(connection.handle()) {
-  sqlite3_stmt* statement = nullptr;
-  const int code = sqlite3_prepare_v2(connection_, text.data(), static_cast<int>(text.size()),
-                                      &statement, nullptr);
-  statement_.reset(statement);
-  if (code != SQLITE_OK) fail(connection_, code, "cannot read its tables");
-}
+    : connection_(connection), text_(text), statement_(connection.take(text)) {}
+
+Statement::~Statement() { connection_.give_back(text_, std::move(statement_)); }
 
 bool Statement::step() {
   const int code = sqlite3_step(statement_.get());
   if (code == SQLITE_ROW) return true;
-  if (code != SQLITE_DONE) fail(connection_, code, "cannot do its work");
+  if (code != SQLITE_DONE) fail(connection_.handle(), code, "cannot do its work");
   return false;
 }
 

@@ -5,19 +5,27 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 struct sqlite3;
 struct sqlite3_stmt;
 
 namespace translucube::server::sql {
 
+struct FinalizeStatement {
+  void operator()(sqlite3_stmt* statement) const;
+};
+using PreparedStatement = std::unique_ptr<sqlite3_stmt, FinalizeStatement>;
+
 /// One SQLite connection, used by one thread at a time: hold `mutex` from the first statement of a
-/// piece of work to the end of the last.
+/// piece of work to the end of the last. Statements stay prepared for the next use of their text:
+/// to prepare one takes longer than to look up a row.
 class Connection {
  public:
   enum class Access { read_write, read_only };
@@ -34,13 +42,21 @@ class Connection {
   struct Close {
     void operator()(sqlite3* handle) const;
   };
+  friend class Statement;
+  PreparedStatement take(std::string_view text);
+  void give_back(std::string_view text, PreparedStatement statement);
+
   std::unique_ptr<sqlite3, Close> handle_;
+  std::map<std::string, std::vector<PreparedStatement>, std::less<>> idle_;  ///< by their text
 };
 
 /// A prepared statement; parameters are bound in order, columns read in order.
 class Statement {
  public:
   Statement(Connection& connection, std::string_view text);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
 
   template <typename... Values>
   Statement& bind(const Values&... values) {
@@ -75,11 +91,9 @@ class Statement {
       bind_null();
   }
 
-  struct Finalize {
-    void operator()(sqlite3_stmt* statement) const;
-  };
-  sqlite3* connection_;
-  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  Connection& connection_;
+  std::string text_;
+  PreparedStatement statement_;
   int next_parameter_ = 1;
 };
 
