@@ -236,9 +236,10 @@ int soak(double minutes, int clients, unsigned seed) {
   const double middle = mean(resident, samples / 3, 2 * samples / 3);
   const double last = mean(resident, 2 * samples / 3, samples);
   json open = json::array();
-  for (const char* state : {"queued", "running"})
-    for (const json& render : service.get(std::string("/v1/renders?status=") + state)["renders"])
-      open.push_back(render["id"]);
+  for (const char* state : {"queued", "running"}) {
+    const json page = service.get(std::string("/v1/renders?status=") + state);
+    for (const json& render : page["renders"]) open.push_back(render["id"]);
+  }
   const auto start = steady_clock::now();
   service.process().kill(SIGTERM);
   const int status = service.process().wait();
