@@ -12,7 +12,6 @@ namespace {
 using api::Problem;
 using api::ProblemCode;
 
-constexpr int longest_wait_s = 60;
 constexpr int default_page = 50, longest_page = 200;
 
 /// The whole text as an integer from `low` to `high`.

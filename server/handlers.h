@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/endpoints.h"
+#include "server/http_negotiation.h"
 
 namespace translucube::server {
 
@@ -45,7 +46,9 @@ std::string entity_tag(const std::string& body);
 Result<std::optional<std::string>> submission_key(const HttpRequest& request);
 /// The query of a list: cursor, limit, status.
 Result<ListQuery> list_query(const HttpRequest& request);
-/// The query's `wait` [s], 0 where it is not there, 60 at most.
+/// Of `Prefer: wait` and `?wait=`.
+inline constexpr int longest_wait_s = 60;
+/// The query's `wait` [s], 0 where it is not there, longest_wait_s at most.
 Result<int> wait_query(const HttpRequest& request);
 
 /// One of a bounded number of places, given back at the end of its life.
@@ -77,6 +80,23 @@ auto answer_after(Endpoints& endpoints, int seconds, bool& waited, Get get, Done
     return std::holds_alternative<api::Problem>(result) || done(std::get<0>(result));
   });
   return result;
+}
+
+/// What `get` answers, tagged. With `wait`: when it has ended, or is no longer as the client's
+/// If-None-Match knows it.
+template <typename Get>
+HttpResponse status_response(Endpoints& endpoints, const HttpRequest& request, Get get) {
+  const auto seconds = wait_query(request);
+  if (const auto* problem = std::get_if<api::Problem>(&seconds)) return problem_response(*problem);
+  const std::string_view known = request.header("if-none-match");
+  bool waited = false;
+  const auto status =
+      answer_after(endpoints, std::get<int>(seconds), waited, get, [&](const auto& now) {
+        return api::is_end(now.state) ||
+               (!known.empty() && !etag_matches(known, entity_tag(to_json(now))));
+      });
+  if (const auto* problem = std::get_if<api::Problem>(&status)) return problem_response(*problem);
+  return tagged_json(request, to_json(std::get<0>(status)));
 }
 
 }  // namespace translucube::server

@@ -29,15 +29,19 @@ void fill_random(void* bytes, std::size_t size) {
 
 }  // namespace
 
-std::string random_hex(int bytes) {
-  std::vector<unsigned char> raw(static_cast<std::size_t>(bytes));
-  fill_random(raw.data(), raw.size());
+std::string hex(std::span<const unsigned char> bytes) {
   std::string text;
-  for (const unsigned char byte : raw) {
+  for (const unsigned char byte : bytes) {
     text += "0123456789abcdef"[byte >> 4];
     text += "0123456789abcdef"[byte & 15];
   }
   return text;
+}
+
+std::string random_hex(int bytes) {
+  std::vector<unsigned char> raw(static_cast<std::size_t>(bytes));
+  fill_random(raw.data(), raw.size());
+  return hex(raw);
 }
 
 std::string content_hash(std::string_view bytes) {

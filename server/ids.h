@@ -2,10 +2,14 @@
 
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace translucube::server {
+
+/// Two hexadecimal digits for each byte, in lower case.
+std::string hex(std::span<const unsigned char> bytes);
 
 /// Random bytes of the operating system, as hexadecimal digits.
 std::string random_hex(int bytes);

@@ -10,8 +10,6 @@ using api::RenderStatus;
 
 namespace {
 
-constexpr int longest_wait_s = 60;
-
 bool has_ended(const RenderStatus& status) { return api::is_end(status.state); }
 
 }  // namespace
@@ -50,19 +48,8 @@ HttpResponse list_renders(Endpoints& endpoints, const HttpRequest& request, cons
   return tagged_json(request, api::render_list_json(renders, next_cursor));
 }
 
-/// With `wait`: when the render has ended, or is no longer as the client's If-None-Match knows it.
 HttpResponse get_render(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
-  const auto seconds = wait_query(request);
-  if (const auto* problem = std::get_if<Problem>(&seconds)) return problem_response(*problem);
-  const std::string_view known = request.header("if-none-match");
-  bool waited = false;
-  const auto status = answer_after(
-      endpoints, std::get<int>(seconds), waited, [&] { return endpoints.service.get(ids.id); },
-      [&](const RenderStatus& now) {
-        return has_ended(now) || (!known.empty() && !etag_matches(known, entity_tag(to_json(now))));
-      });
-  if (const auto* problem = std::get_if<Problem>(&status)) return problem_response(*problem);
-  return tagged_json(request, to_json(std::get<RenderStatus>(status)));
+  return status_response(endpoints, request, [&] { return endpoints.service.get(ids.id); });
 }
 
 HttpResponse cancel_render(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {

@@ -51,21 +51,8 @@ HttpResponse list_sweeps(Endpoints& endpoints, const HttpRequest& request, const
   return tagged_json(request, api::sweep_list_json(sweeps, next_cursor));
 }
 
-/// With `wait`: when the sweep has ended, or is no longer as the client's If-None-Match knows it.
 HttpResponse get_sweep(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
-  const auto seconds = wait_query(request);
-  if (const auto* problem = std::get_if<Problem>(&seconds)) return problem_response(*problem);
-  const std::string_view known = request.header("if-none-match");
-  bool waited = false;
-  const auto status = answer_after(
-      endpoints, std::get<int>(seconds), waited,
-      [&] { return endpoints.service.get_sweep(ids.id); },
-      [&](const SweepStatus& now) {
-        return api::is_end(now.state) ||
-               (!known.empty() && !etag_matches(known, entity_tag(to_json(now))));
-      });
-  if (const auto* problem = std::get_if<Problem>(&status)) return problem_response(*problem);
-  return tagged_json(request, to_json(std::get<SweepStatus>(status)));
+  return status_response(endpoints, request, [&] { return endpoints.service.get_sweep(ids.id); });
 }
 
 HttpResponse cancel_sweep(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {

@@ -1,7 +1,6 @@
 #include "server/tokens.h"
 
 #include <openssl/crypto.h>
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <charconv>
@@ -30,15 +29,6 @@ std::optional<Sha256> from_hex(std::string_view text) {
   return hash;
 }
 
-std::string to_hex(const Sha256& hash) {
-  std::string text;
-  for (const unsigned char byte : hash) {
-    text += "0123456789abcdef"[byte >> 4];
-    text += "0123456789abcdef"[byte & 15];
-  }
-  return text;
-}
-
 void read_token(const nlohmann::json& value, const std::string& pointer, std::vector<Token>& tokens,
                 api::Faults& faults) {
   api::ObjectReader object(value, pointer, faults);
@@ -58,13 +48,6 @@ void read_token(const nlohmann::json& value, const std::string& pointer, std::ve
 }
 
 }  // namespace
-
-Sha256 sha256(std::string_view bytes) {
-  Sha256 hash{};
-  if (EVP_Digest(bytes.data(), bytes.size(), hash.data(), nullptr, EVP_sha256(), nullptr) != 1)
-    throw std::runtime_error("SHA-256 failed");
-  return hash;
-}
 
 bool is_token_name(std::string_view name) {
   return !name.empty() && name.size() <= 64 && std::ranges::all_of(name, [](char c) {
@@ -109,7 +92,7 @@ std::string_view name_of(const std::vector<Token>& tokens, std::string_view pres
 NewToken make_token(std::string_view name) {
   std::string token = random_hex(token_bytes);
   std::string entry =
-      R"({"name":")" + std::string(name) + R"(","sha256":")" + to_hex(sha256(token)) + R"("})";
+      R"({"name":")" + std::string(name) + R"(","sha256":")" + hex(sha256(token)) + R"("})";
   return {std::move(token), std::move(entry)};
 }
 

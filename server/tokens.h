@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <stdexcept>
@@ -8,10 +7,9 @@
 #include <string_view>
 #include <vector>
 
-namespace translucube::server {
+#include "server/sha256.h"
 
-using Sha256 = std::array<unsigned char, 32>;
-Sha256 sha256(std::string_view bytes);
+namespace translucube::server {
 
 /// One who may use the service. The token itself is nowhere: it has 256 random bits, so that a
 /// plain hash tells nothing of it.

@@ -51,7 +51,7 @@ inline constexpr Reason reasons[] = {
      "Four samples of 256 x 256 pixels on two cores allow 610 ns a sample for everything; "
      "scattering "
      "bodies take 2000. The walk is not in SIMD yet. What is not the trace: two syncs of the job's "
-     "record and two of the picture, which were promised, and 5 ms of work."},
+     "record and two of the picture, which were promised, and small work."},
     {"process",
      "40 ms of work, half of it the environment's file and its tables; the rest is waiting for the "
      "disk and for other processes."},
