@@ -36,7 +36,9 @@ struct LightStrata {
 /// Scattering vertices, each with a direction towards the light (structure of arrays).
 struct ExitBatch {
   static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
-  using Floats = std::array<float, capacity>;
+  /// So that equal places of two arrays do not fall into the same set of a cache.
+  static constexpr std::size_t padding = 16;
+  using Floats = std::array<float, capacity + padding>;
 
   std::size_t size = 0;
   // In: outward radius (unit), 1 - rho^2, direction of travel before the vertex (unit), direction

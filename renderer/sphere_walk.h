@@ -30,8 +30,10 @@ struct WalkMedium {
 class SphereWalk {
  public:
   static constexpr std::size_t capacity = 1024;  ///< a multiple of every register's lanes
-  using Floats = std::array<float, capacity>;
-  using Integers = std::array<std::uint32_t, capacity>;
+  /// So that equal places of two arrays do not fall into the same set of a cache.
+  static constexpr std::size_t padding = 16;
+  using Floats = std::array<float, capacity + padding>;
+  using Integers = std::array<std::uint32_t, capacity + padding>;
 
   /// Walks under way (structure of arrays). `length` is counted from their push.
   struct Walking {
