@@ -118,7 +118,7 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   signal.wait(0);
   spdlog::info("signal {}: shutting down", signal.load());
   const Watchdog watchdog(longest_drain);
-  service.shut_down();
+  service.shut_down(std::chrono::seconds(catalog.server.drain_s));
   server.stop();
   http.join();
   return 0;

@@ -26,6 +26,12 @@ void WorkerPool::stop() {
   threads_.clear();  // joins
 }
 
+void WorkerPool::drain(std::chrono::milliseconds time) {
+  std::unique_lock lock(mutex_);
+  draining_ = true;
+  idle_.wait_for(lock, time, [this] { return busy_ == 0; });
+}
+
 void WorkerPool::wake() {
   {
     const std::lock_guard lock(mutex_);
@@ -58,7 +64,9 @@ void WorkerPool::work(int worker, std::stop_token stop) {
     std::uint64_t seen = 0;
     {
       const std::lock_guard lock(mutex_);
+      if (draining_) return;
       seen = wakes_;
+      ++busy_;
     }
     std::optional<Task> task;
     try {
@@ -66,12 +74,13 @@ void WorkerPool::work(int worker, std::stop_token stop) {
     } catch (const StoreError& error) {
       spdlog::error("no task claimed: {}", error.what());
     }
-    if (task) {
+    if (task)
       run(runner, *task, stop);
-      continue;
-    }
-    runner.forget();
+    else
+      runner.forget();
     std::unique_lock lock(mutex_);
+    if (--busy_ == 0) idle_.notify_all();
+    if (task) continue;
     awake_.wait_for(lock, stop, poll_interval, [&] { return wakes_ != seen; });
   }
 }

@@ -79,7 +79,9 @@ TEST(MetricsTest, StreamsAreCountedWhileTheyAreOpen) {
 TEST(MetricsTest, EveryNameHasItsHelpAndType) {
   Metrics metrics;
   metrics.count_request("GET", "/livez", 200, 0.1);
-  metrics.set_store_gauges([] { return StoreGauges{{{"queued", 1}}, {{"queued", 1}}, {{"batch", 1}}, 1, 1}; });
+  metrics.set_store_gauges([] {
+    return StoreGauges{{{"queued", 1}}, {{"queued", 1}}, {{"batch", 1}}, 1, 1};
+  });
   std::istringstream lines(metrics.text());
   std::set<std::string> helped, typed;
   for (std::string line; std::getline(lines, line);) {
