@@ -45,7 +45,8 @@ std::variant<SubmittedSweep, IdempotencyMismatch, QueueFull> JobStore::submit(
   }
   std::vector<std::optional<std::string>> made;
   for (const auto& lanes : sweep.images) made.push_back(use_results(lanes, now));
-  const auto missing = static_cast<std::size_t>(std::ranges::count(made, std::nullopt));
+  const auto missing = static_cast<std::size_t>(
+      std::ranges::count_if(made, [](const auto& stats) { return !stats; }));
   if (missing > 0 && !queue_has_room(missing)) return QueueFull{};
   const std::string id = ids_->next(now);
   std::size_t points = 0;

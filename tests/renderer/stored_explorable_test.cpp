@@ -9,6 +9,8 @@
 #include "renderer/half.h"
 #include "renderer/image_io.h"
 #include "renderer/material_cube.h"
+#include "renderer/render.h"
+#include "renderer/scene_data.h"
 #include "tests/support/absorbers.h"
 
 namespace translucube {

@@ -71,7 +71,9 @@ TEST(StoreUpgrade, IsDoneOnce) {
   for (int start = 0; start < 2; ++start) {
     TestService service(folder.path(), renderer.engine());
     EXPECT_FALSE(service.exr(succeeded).empty());
-    if (start == 0) EXPECT_EQ(service.service.remove(failed), std::nullopt);
+    if (start == 0) {
+      EXPECT_EQ(service.service.remove(failed), std::nullopt);
+    }
     EXPECT_TRUE(std::holds_alternative<api::Problem>(service.service.get(failed)));
   }
 }
