@@ -130,7 +130,8 @@ std::optional<Problem> JobService::remove(const std::string& id) {
 }
 
 Result<ImageFile> JobService::image(const std::string& id, const ImageQuery& query) {
-  if (auto known = pictures_.find({id, query})) return std::move(*known);
+  if (auto known = pictures_.find({id, query}); known && known->file->is_as_opened())
+    return std::move(*known);
   const auto now = pictures_.now();
   auto made = guarded<Result<ImageFile>>([&]() -> Result<ImageFile> {
     const std::optional<Job> job = store_.find(id);
