@@ -11,7 +11,7 @@ namespace translucube::server {
 // Leases run out and delayed tasks fall due without anyone saying so.
 constexpr std::chrono::milliseconds poll_interval(500);
 constexpr unsigned interactive_share = 3;  ///< interactive tasks for one of a batch
-constexpr int nice_of_workers = 10;
+constexpr int nicer_than_others = 10;
 
 WorkerPool::WorkerPool(Workshop workshop, int workers, std::function<void()> on_change)
     : workshop_(std::move(workshop)), on_change_(std::move(on_change)), workers_(workers) {
@@ -58,7 +58,8 @@ std::optional<Task> WorkerPool::claim(int worker, const std::string& in_hand) {
 void WorkerPool::work(int worker, std::stop_token stop) {
   // Per thread on Linux, and inherited by those that the renderer starts. Without the right to it
   // the work goes on.
-  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice_of_workers);
+  const auto self = static_cast<id_t>(::gettid());
+  ::setpriority(PRIO_PROCESS, self, ::getpriority(PRIO_PROCESS, self) + nicer_than_others);
   TaskRunner runner(workshop_);
   while (!stop.stop_requested()) {
     std::uint64_t seen = 0;

@@ -44,15 +44,15 @@ class Service:
             return int(re.search(r"VmRSS:\s+(\d+) kB", status.read()).group(1)) / 1024
 
     def request_cpu_s(self):
-        """CPU time so far of the threads that answer: all but the workers, which are nice."""
-        total = 0
+        """CPU time so far of the threads that answer: all but the workers, which are nicer."""
+        total, own = 0, os.getpriority(os.PRIO_PROCESS, self.process.pid)
         tasks = f"/proc/{self.process.pid}/task"
         for task in os.listdir(tasks):
             try:
                 with open(f"{tasks}/{task}/stat") as stat, \
                         open(f"{tasks}/{task}/schedstat") as spent:
                     nice = int(stat.read().rpartition(")")[2].split()[16])
-                    total += int(spent.read().split()[0]) / 1e9 if nice == 0 else 0
+                    total += int(spent.read().split()[0]) / 1e9 if nice == own else 0
             except FileNotFoundError:
                 pass  # a thread that has ended
         return total
