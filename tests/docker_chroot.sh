@@ -37,7 +37,8 @@ inside() { # user, folder, command
 copy() { # from this folder, its files, to the last of the arguments
   local from=$1 to=${*: -1} file
   shift
-  [[ $to == /* ]] || to=$folder/${to#.}
+  [ "$to" != . ] || to=$folder/
+  [[ $to == /* ]] || to=$folder/$to
   mkdir -p "$root/$(dirname "$to/x")"
   while [ $# -gt 1 ]; do
     file=$from/$1
