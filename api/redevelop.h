@@ -2,6 +2,7 @@
 
 // Another absorber for a render that is done: what an explorable film is developed for.
 
+#include <compare>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,7 @@ struct Redevelopment {
   std::optional<std::string> absorber{};  ///< a name of the catalog
 
   bool asked() const { return absorption || absorber; }
+  auto operator<=>(const Redevelopment&) const = default;
 };
 
 /// The whole text as a number in [0, 1], or nothing.

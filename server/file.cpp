@@ -36,6 +36,11 @@ void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
   }
 }
 
+std::string version_of(const struct stat& status) {
+  return std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec) +
+         '.' + std::to_string(status.st_size);
+}
+
 /// Removes a file when it goes out of scope, if it is still there.
 struct Removal {
   std::filesystem::path path;
@@ -66,10 +71,14 @@ std::shared_ptr<const OpenFile> OpenFile::open(const std::filesystem::path& path
   struct stat status {};
   if (::fstat(file->fd_.get(), &status) != 0) fail(path, "read", errno);
   file->size_ = static_cast<std::uint64_t>(status.st_size);
-  file->version_ = std::to_string(status.st_mtim.tv_sec) + '.' +
-                   std::to_string(status.st_mtim.tv_nsec) + '.' + std::to_string(status.st_size);
+  file->version_ = version_of(status);
   file->name_ = path.filename().string();
   return file;
+}
+
+bool OpenFile::is_as_opened() const {
+  struct stat status {};
+  return ::fstat(fd_.get(), &status) == 0 && status.st_nlink > 0 && version_of(status) == version_;
 }
 
 void OpenFile::read(std::uint64_t offset, char* buffer, std::size_t size) const {

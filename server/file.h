@@ -45,6 +45,8 @@ class OpenFile {
   /// Fills the buffer from the offset on. Throws FileError if the file has not that many bytes.
   void read(std::uint64_t offset, char* buffer, std::size_t size) const;
   std::string read_all() const;
+  /// False once it was written, cut, replaced or removed.
+  bool is_as_opened() const;
 
  private:
   FileDescriptor fd_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -23,6 +24,8 @@ struct ImageQuery {
   ImageFormat format = ImageFormat::png;
   std::optional<std::string> display, view, colorspace;
   api::Redevelopment redevelopment{};  ///< of an explorable render
+
+  auto operator<=>(const ImageQuery&) const = default;
 };
 
 /// An image query with every default filled in.

@@ -170,6 +170,7 @@ void JobService::discard_files(const std::string& folder) {
 }
 
 void JobService::discard_result(const StoredResult& result) {
+  pictures_.forget();
   try {
     remove_files(artifacts_, result);
   } catch (const FileError& error) {
@@ -206,12 +207,13 @@ std::optional<std::string> JobService::unready_reason() {
   return probe_failure_;
 }
 
-void JobService::shut_down() {
+void JobService::shut_down(std::chrono::milliseconds drain) {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
   change_.notify_all();
+  workers_->drain(drain);
   workers_->stop();
 }
 

@@ -152,8 +152,10 @@ void provoke_images(Contract& contract) {
   busy.caller.call("getPointImage", 409, sweep, "?absorber=amber");
 
   // Removed to make room.
-  for (const StoredResult& result : busy.service.store.least_recently_used(1 << 30))
+  for (const StoredResult& result : busy.service.store.least_recently_used(1 << 30)) {
     EXPECT_TRUE(busy.service.store.remove_result(result));
+    remove_files(busy.service.artifacts, result);
+  }
   busy.caller.call("getImage", 410, render);
   busy.caller.call("getPointImage", 410, sweep);
 
