@@ -8,7 +8,9 @@
 #include "api/problem.h"
 #include "server/artifact_store.h"
 #include "server/engine.h"
+#include "server/explorable_cache.h"
 #include "server/job_store.h"
+#include "server/live_films.h"
 #include "server/metrics.h"
 #include "server/traced_job.h"
 
@@ -20,6 +22,8 @@ struct Workshop {
   JobStore& store;
   ArtifactStore& artifacts;
   Metrics& metrics;
+  LiveFilms& live_films;
+  ExplorableCache& explorables;
   Engine engine;
   int threads = 0;  ///< for each render; 0: all cores
 };
@@ -42,9 +46,11 @@ class TaskRunner {
     std::string id;
     TracedJob job;
     std::shared_ptr<const Scene> scene;
-    Film film;
+    std::shared_ptr<LiveFilm> live = std::make_shared<LiveFilm>();
     double seconds = 0;  ///< wall clock of tracing, over all runs of the service
     double seconds_at_checkpoint = 0;
+
+    const Film& film() const { return live->film; }
   };
 
   void run_or_throw(const Task& task, std::stop_source work);
