@@ -16,7 +16,7 @@ namespace translucube::api {
 
 /// What is left out stays as the render's request has it.
 struct Redevelopment {
-  std::optional<double> absorption{};     ///< the cube's, [0, 1]
+  std::optional<double> absorption{};  ///< the cube's, [0, 1]
   /// A name of the catalog, or JSON text of an absorber as a request has it ({"rgb": ...}).
   std::optional<std::string> absorber{};
 

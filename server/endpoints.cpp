@@ -50,7 +50,7 @@ struct Route {
 };
 
 constexpr Parameters list_parameters{"cursor", "limit", "status"};
-constexpr Parameters image_parameters{"format",     "display",    "view",   "colorspace",
+constexpr Parameters image_parameters{"format",     "display",  "view",   "colorspace",
                                       "absorption", "absorber", "partial"};
 constexpr Parameters point_parameters{"format",     "display",    "view",
                                       "colorspace", "absorption", "absorber"};

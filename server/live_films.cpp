@@ -23,8 +23,7 @@ void LiveFilms::set(LiveFilm& live, Film film) {
 void LiveFilms::merge(LiveFilm& live, const PassFilm& pass) {
   {
     const std::lock_guard lock(live.mutex);
-    if (live.film.passes == 0)
-      live.film = Film(pass.width, pass.height, pass.lanes, pass.shares);
+    if (live.film.passes == 0) live.film = Film(pass.width, pass.height, pass.lanes, pass.shares);
     translucube::merge(live.film, pass);
   }
   on_change_();

@@ -1,5 +1,6 @@
-# Writes a table of the files of FOLDER as C++ to OUT. Text only: each is one raw string.
-file(GLOB files ${FOLDER}/*)
+# Writes a table of the files of FOLDER as C++ to OUT. Text only: each is one raw string. (package.json
+# is for Node.js, which tests the modules.)
+file(GLOB files ${FOLDER}/*.html ${FOLDER}/*.css ${FOLDER}/*.js ${FOLDER}/*.svg)
 list(SORT files)
 set(table "")
 foreach(file IN LISTS files)

@@ -9,7 +9,7 @@
 namespace translucube::server {
 
 struct WebFile {
-  std::string_view name;   ///< "cube.js"
+  std::string_view name;  ///< "cube.js"
   std::string_view bytes;
 };
 
