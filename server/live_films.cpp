@@ -2,22 +2,18 @@
 
 namespace translucube::server {
 
-std::shared_ptr<LiveFilm> LiveFilms::add(const std::string& id,
-                                         std::shared_ptr<const Scene> scene) {
+std::shared_ptr<LiveFilm> LiveFilms::add(const std::string& id, std::shared_ptr<const Scene> scene,
+                                         Film film) {
   auto live = std::make_shared<LiveFilm>();
   live->scene = std::move(scene);
-  const std::lock_guard lock(mutex_);
-  std::erase_if(films_, [](const auto& entry) { return entry.second.expired(); });
-  films_[id] = live;
-  return live;
-}
-
-void LiveFilms::set(LiveFilm& live, Film film) {
+  live->film = std::move(film);
   {
-    const std::lock_guard lock(live.mutex);
-    live.film = std::move(film);
+    const std::lock_guard lock(mutex_);
+    std::erase_if(films_, [](const auto& entry) { return entry.second.expired(); });
+    films_[id] = live;
   }
-  on_change_();
+  if (live->film.samples > 0) on_change_();
+  return live;
 }
 
 void LiveFilms::merge(LiveFilm& live, const PassFilm& pass) {

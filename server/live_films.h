@@ -28,9 +28,9 @@ class LiveFilms {
   /// `on_change` is called whenever there is more to see.
   explicit LiveFilms(std::function<void()> on_change = [] {}) : on_change_(std::move(on_change)) {}
 
-  /// A new film, seen as long as it lives.
-  std::shared_ptr<LiveFilm> add(const std::string& id, std::shared_ptr<const Scene> scene);
-  void set(LiveFilm& live, Film film);
+  /// Seen as long as it lives, or until the next of this job.
+  std::shared_ptr<LiveFilm> add(const std::string& id, std::shared_ptr<const Scene> scene,
+                                Film film);
   void merge(LiveFilm& live, const PassFilm& pass);
 
   /// nullptr where no worker has the job in hand.

@@ -55,8 +55,6 @@ std::optional<std::uint32_t> TaskRunner::total_samples() const {
   return target ? std::optional(target->samples) : std::nullopt;
 }
 
-void TaskRunner::forget() { hand_ = {}; }
-
 void TaskRunner::run(const Task& task, std::stop_source work) {
   try {
     if (task.attempts > max_attempts) {
@@ -146,7 +144,9 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
     return;
   }
 
-  if (!stored && task_seconds <= seconds_between_checkpoints)
+  // An explorable film is written when it is put down, or with a checkpoint: that takes longer than
+  // a short pass.
+  if (!stored && task_seconds <= seconds_between_checkpoints && !hand_.film().shares)
     workshop_.artifacts.write_pass(task.job_id, *pass);
   pass.reset();
   const TaskResult result{task_seconds, progress_of(hand_.film(), hand_.job.quality(), seconds)};
@@ -156,58 +156,9 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
     return;
   }
   hand_.seconds = seconds;
-  if (seconds - hand_.seconds_at_checkpoint >= seconds_between_checkpoints) {
-    workshop_.artifacts.write_film(task.job_id, hand_.film());
-    workshop_.artifacts.remove_films_before(task.job_id, hand_.film().passes);
-    hand_.seconds_at_checkpoint = seconds;
-  }
-}
-
-/// Makes the job's scene and its merged film of the passes before the task's. False where it ended
-/// the task instead.
-bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token stop) {
-  if (hand_.id == task.job_id && hand_.film().passes == task.pass.index) return true;
-  if (hand_.id != task.job_id) {
-    forget();
-    // Another job may have made the same pictures since this one was accepted.
-    if (workshop_.store.finish_from_results(task)) {
-      workshop_.metrics.count_cache_hit();
-      workshop_.artifacts.remove_all(task.job_id);
-      return false;
-    }
-    auto traced = traced_job(job, workshop_.store, workshop_.catalog);
-    if (const auto* problem = std::get_if<api::Problem>(&traced)) {
-      fail(task, *problem);
-      return false;
-    }
-    hand_.job = std::get<TracedJob>(std::move(traced));
-    hand_.scene = workshop_.engine.build(api::scene_spec(hand_.job.requests, workshop_.catalog));
-    hand_.live = workshop_.live_films.add(task.job_id, hand_.scene);
-    hand_.id = task.job_id;
-  }
-  Film film = workshop_.artifacts.read_film(task.job_id, task.pass.index);
-  hand_.seconds = workshop_.store.traced_seconds(task.job_id);
-  hand_.seconds_at_checkpoint = hand_.seconds;
-  // A checkpoint lost to a broken disk costs time, not the render.
-  while (film.passes < task.pass.index) {
-    const std::optional<Pass> lost = plan_pass(film.passes, hand_.job.pixels(), total_samples());
-    std::optional<PassFilm> pass;
-    if (lost) pass = workshop_.artifacts.read_pass(task.job_id, *lost);
-    if (lost && !pass) {
-      spdlog::warn("render {}: pass {} is traced again", task.job_id, lost->index);
-      pass = workshop_.engine.trace(*hand_.scene, *lost, workshop_.threads, stop);
-    }
-    if (!pass) {
-      forget();
-      workshop_.store.release(task);
-      return false;
-    }
-    workshop_.artifacts.write_pass(task.job_id, *pass);
-    if (film.passes == 0) film = Film(pass->width, pass->height, pass->lanes, pass->shares);
-    merge(film, *pass);
-  }
-  workshop_.live_films.set(*hand_.live, std::move(film));
-  return true;
+  if (seconds - hand_.seconds_at_checkpoint >=
+      std::max(seconds_between_checkpoints, hand_.least_between_checkpoints))
+    keep_checkpoint();
 }
 
 /// The pictures of all lanes, and what the store keeps of them.
@@ -237,7 +188,7 @@ std::vector<StoredResult> TaskRunner::write_pictures(const Task& task, const std
         write_explorable(file, *film, canonical);
       });
       picture = develop_explorable(*film, *hand_.scene, workshop_.threads);
-      workshop_.explorables.keep(name, film);
+      workshop_.explorables.keep(explorable_name(name), film);
     } else {
       picture = develop(hand_.film(), static_cast<int>(lane));
     }

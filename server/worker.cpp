@@ -70,10 +70,11 @@ void WorkerPool::work(int worker, std::stop_token stop) {
       run(runner, *task, stop);
       continue;
     }
-    runner.forget();
+    runner.put_down();
     std::unique_lock lock(mutex_);
     awake_.wait_for(lock, stop, poll_interval, [&] { return wakes_ != seen; });
   }
+  runner.put_down();
 }
 
 void WorkerPool::run(TaskRunner& runner, const Task& task, std::stop_token stop) {

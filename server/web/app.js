@@ -28,7 +28,7 @@ const tracer = new Tracer(service, {
   progress: showProgress,
   material: report => sliders.setReport(report, state),
   problem(error) {
-    byId('status').textContent = 'No picture.';
+    byId('status').textContent = 'Not this: what is shown is from before.';
     showProblem(error);
   },
 });
@@ -69,19 +69,15 @@ function change(part, last) {
   }
 }
 
-/// Brings every control to the state. While a control moves, the others keep what they are made of.
+/// Brings the controls to the state: all, or those that follow a movement.
 function reflect(all = true) {
   sliders.set(state);
   drawCube();
   if (!all) return;
-  const focused = document.activeElement?.dataset?.pointer;
   absorber.set(state);
   body.set(state);
   object.set(state);
   scene.set(state);
-  // The controls are new ones: the focus stays with the one that had it.
-  if (focused && document.activeElement === document.body)
-    document.querySelector(`[data-pointer="${CSS.escape(focused)}"]`)?.focus();
 }
 
 function drawCube() {

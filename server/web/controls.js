@@ -49,67 +49,103 @@ export class AxisSliders {
   }
 }
 
-/// Index, anisotropy, pigment.
-export class BodyControls {
+/// Controls of some parts of the state. They are made anew only where the state is another one than
+/// they show: not under the hands of who changes it.
+class Panel {
   #root;
   #change;
+  #keys;
+  #shown = '';
+  #state = null;
 
-  constructor(root, change) {
+  constructor(root, change, keys) {
     this.#root = root;
     this.#change = change;
+    this.#keys = keys;
   }
 
   set(state) {
-    const change = key => value => this.#change({[key]: value}, true);
-    this.#root.replaceChildren(
-        field('Index', numberInput(state.ior, {min: 1, max: 4, step: 0.01, onchange: change('ior')}),
-            {pointer: '/material/ior'}),
-        field('Anisotropy g',
-            numberInput(state.anisotropy, {min: -0.99, max: 0.99, step: 0.05, onchange: change('anisotropy')}),
-            {pointer: '/material/anisotropy'}),
-        field('Pigment κ',
-            numberInput(state.pigment, {min: 0, step: 0.01, onchange: change('pigment')}),
-            {
-              pointer: '/material/pigment',
-              hint: state.pigment ? 'σₐ = κ σₛ: the scatterers absorb, absorption a has no use' : '0: scatterers do not absorb',
-            }));
+    const text = this.#text(state);
+    this.#state = state;
+    if (text === this.#shown) return;
+    this.#shown = text;
+    this.#root.replaceChildren(...this.build(state));
+  }
+
+  /// What they can show is other than before.
+  remake() {
+    this.#shown = '';
+    if (this.#state) this.set(this.#state);
+  }
+
+  /// The user has changed a part; `anew` where the controls depend on it.
+  tell(part, anew = false) {
+    this.#state = {...this.#state, ...part};
+    if (!anew) this.#shown = this.#text(this.#state);
+    this.#change(part, true);
+  }
+
+  get state() {
+    return this.#state;
+  }
+
+  #text(state) {
+    return JSON.stringify(this.#keys.map(key => state[key]));
   }
 }
 
+/// Index, anisotropy, pigment.
+export class BodyControls extends Panel {
+  constructor(root, change) {
+    super(root, change, ['ior', 'anisotropy', 'pigment']);
+  }
+
+  build(state) {
+    const input = (key, bounds) =>
+        numberInput(state[key], {...bounds, onchange: value => this.tell({[key]: value})});
+    return [
+      field('Index', input('ior', {min: 1, max: 4, step: 0.01}), {pointer: '/material/ior'}),
+      field('Anisotropy g', input('anisotropy', {min: -0.99, max: 0.99, step: 0.05}),
+          {pointer: '/material/anisotropy'}),
+      field('Pigment κ', input('pigment', {min: 0, step: 0.01}), {
+        pointer: '/material/pigment',
+        hint: 'Above 0 the scatterers absorb, σₐ = κ σₛ, and absorption a has no use.',
+      }),
+    ];
+  }
+}
+
+const sphere = {
+  name: 'sphere', description: '',
+  parameters: [{name: 'radius_mm', type: 'number', unit: 'mm', default: 20, minimum: 1e-6}],
+};
+
 /// The object and its parameters, built from what GET /v1/objects lists.
-export class ObjectControls {
-  #root;
-  #change;
-  #objects = [{
-    name: 'sphere', description: '',
-    parameters: [{name: 'radius_mm', type: 'number', unit: 'mm', default: 20, minimum: 1e-6}],
-  }];
+export class ObjectControls extends Panel {
+  #objects = [sphere];
 
   constructor(root, change) {
-    this.#root = root;
-    this.#change = change;
+    super(root, change, ['object']);
   }
 
   setList(objects) {
     if (objects.length > 0) this.#objects = objects;
+    this.remake();
   }
 
-  set({object}) {
+  build({object}) {
     const kind = this.#objects.find(({name}) => name === object.type);
-    const choose = select(this.#objects.map(({name}) => name), object.type, name => {
-      const chosen = this.#objects.find(other => other.name === name);
-      this.#change({object: withDefaults(chosen)}, true);
-    });
-    choose.dataset.pointer = '/scene/object/type';
-    this.#root.replaceChildren(
-        field('Object', choose, {pointer: '/scene/object', hint: kind?.description}),
-        ...(kind?.parameters ?? []).map(parameter => this.#parameter(parameter, object)));
+    const choose = select(this.#objects.map(({name}) => name), object.type, name =>
+      this.tell({object: withDefaults(this.#objects.find(other => other.name === name))}, true));
+    return [
+      field('Object', choose, {pointer: '/scene/object', hint: kind?.description}),
+      ...(kind?.parameters ?? []).map(parameter => this.#parameter(parameter, object)),
+    ];
   }
 
-  #parameter(parameter, object) {
-    const {name, type, unit, minimum, maximum, values, description} = parameter;
-    const value = object[name] ?? parameter.default ?? '';
-    const change = given => this.#change({object: {...object, [name]: given}}, true);
+  #parameter({name, type, unit, minimum, maximum, values, description, default: usual}, object) {
+    const value = object[name] ?? usual ?? '';
+    const change = given => this.tell({object: {...this.state.object, [name]: given}});
     const control = values ? select(values, value, change)
         : type === 'number' ? numberInput(value, {min: minimum, max: maximum, onchange: change})
         : type === 'boolean' ? element('input', {
@@ -137,46 +173,51 @@ export function caption(name, unit) {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
+const sizes = ['256', '384', '512', '768', '1024'], sampleCounts = ['16', '64', '256', '1024', '4096'];
+const white = {constant: [1, 1, 1]};
+
 /// Environment, camera, display and size.
-export class SceneControls {
-  #root;
-  #change;
-  #environments = ['forest'];
-  #displays = [];
+export class SceneControls extends Panel {
+  #environments = [];
+  #views = [];
 
   constructor(root, change) {
-    this.#root = root;
-    this.#change = change;
+    super(root, change, [
+      'environment', 'rotation', 'azimuth', 'elevation', 'distance', 'view', 'size', 'samples',
+    ]);
   }
 
   setLists(environments, displays) {
     this.#environments = environments.map(({name}) => name);
-    this.#displays = displays.flatMap(({name, views}) => views.map(view => `${name}/${view}`));
+    this.#views = displays.flatMap(({name, views}) => views.map(view => `${name}/${view}`));
+    this.remake();
   }
 
-  set(state) {
-    const change = key => value => this.#change({[key]: value}, true);
-    const constant = typeof state.environment !== 'string';
+  build(state) {
+    const named = typeof state.environment === 'string';
     const environments = [...this.#environments, {name: '', label: 'uniform white'}];
-    if (!constant && !this.#environments.includes(state.environment))
+    if (named && !this.#environments.includes(state.environment))
       environments.unshift(state.environment);
-    const angle = (key, low, high) =>
-        numberInput(state[key], {min: low, max: high, step: 5, onchange: change(key)});
-    const views = this.#displays.map(name => ({name, label: name.replace('/', ' · ')}));
-    this.#root.replaceChildren(
-        field('Environment', select(environments, constant ? '' : state.environment,
-            name => this.#change({environment: name || {constant: [1, 1, 1]}}, true)),
-            {pointer: '/scene/environment'}),
-        field('Turned by', angle('rotation', -360, 360), {unit: '°', pointer: '/scene/environment/rotation_deg'}),
-        field('Seen from', angle('azimuth', -180, 180), {unit: '° right'}),
-        field('and', angle('elevation', -85, 85), {unit: '° above'}),
-        field('Distance', numberInput(state.distance, {min: 1, step: 5, onchange: change('distance')}),
-            {unit: 'mm', pointer: '/scene/camera'}),
-        field('Shown for', select(views, state.view || views[0]?.name || '', change('view')),
-            {pointer: '?view'}),
-        field('Size', select(['256', '384', '512', '768', '1024'], String(state.size),
-            text => this.#change({size: Number(text)}, true)), {unit: 'px', pointer: '/image'}),
-        field('Samples', select(['16', '64', '256', '1024', '4096'], String(state.samples),
-            text => this.#change({samples: Number(text)}, true)), {pointer: '/quality'}));
+    const number = (key, bounds) =>
+        numberInput(state[key], {...bounds, onchange: value => this.tell({[key]: value})});
+    const choice = (key, options) => {
+      const value = String(state[key]);
+      return select(options.includes(value) ? options : [value, ...options], value,
+          text => this.tell({[key]: Number(text)}));
+    };
+    const views = this.#views.map(name => ({name, label: name.replace('/', ' · ')}));
+    return [
+      field('Environment', select(environments, named ? state.environment : '',
+          name => this.tell({environment: name || white})), {pointer: '/scene/environment'}),
+      field('Turned by', number('rotation', {min: -360, max: 360, step: 5}),
+          {unit: '°', pointer: '/scene/environment/rotation_deg'}),
+      field('Seen from', number('azimuth', {min: -180, max: 180, step: 5}), {unit: '° right'}),
+      field('and', number('elevation', {min: -85, max: 85, step: 5}), {unit: '° above'}),
+      field('Distance', number('distance', {min: 1, step: 5}), {unit: 'mm', pointer: '/scene/camera'}),
+      field('Shown for', select(views, state.view || views[0]?.name || '', view => this.tell({view})),
+          {pointer: '?view'}),
+      field('Size', choice('size', sizes), {unit: 'px', pointer: '/image'}),
+      field('Samples', choice('samples', sampleCounts), {pointer: '/quality'}),
+    ];
   }
 }

@@ -204,17 +204,19 @@ export class CubeView {
         middle[axis] = 0.5;
         const [mx, my] = this.#projection.at(middle);
         const length = Math.hypot(mx - center[0], my - center[1]) || 1;
-        return [x + away * (mx - center[0]) / length, y + away * (my - center[1]) / length];
+        const out = [(mx - center[0]) / length, (my - center[1]) / length];
+        return {x: x + away * out[0], y: y + away * out[1], right: out[0]};
       };
-      const write = (text, [x, y]) => {
-        const half = paint.measureText(text).width / 2;
-        paint.textAlign = 'center';
-        const inside = Math.min(Math.max(x, half + 2), 2 * center[0] - half - 2);
-        paint.fillText(text, inside, Math.min(Math.max(y, 8), 2 * center[1] - 8));
+      // Text begins where it is furthest out, so that it never crosses its edge.
+      const write = (text, {x, y, right}) => {
+        const {width} = paint.measureText(text);
+        const left = x - width * (right > 0.25 ? 0 : right < -0.25 ? 1 : 0.5);
+        paint.fillText(text, Math.min(Math.max(left, 2), 2 * center[0] - width - 2),
+            Math.min(Math.max(y, 8), 2 * center[1] - 8));
       };
-      write(names[axes[axis]], place(0.5, 24));
-      write('0', place(0.02, 10));
-      write('1', place(0.98, 10));
+      write(names[axes[axis]], place(0.5, 12));
+      write('0', place(0.04, 7));
+      write('1', place(0.96, 7));
     }
   }
 

@@ -9,7 +9,7 @@ export function clearProblem() {
   byId('problems').replaceChildren();
   for (const control of marked) {
     control.removeAttribute('aria-invalid');
-    control.removeAttribute('aria-errormessage');
+    control.removeAttribute('aria-describedby');
   }
   marked = [];
 }
@@ -39,7 +39,7 @@ export function showProblem(error) {
     const control = controlOf(pointer) ?? controlOf(pointer.replace(/^\/base/, ''));
     if (!control) continue;
     control.setAttribute('aria-invalid', 'true');
-    control.setAttribute('aria-errormessage', id);
+    control.setAttribute('aria-describedby', id);
     marked.push(control);
   }
 }

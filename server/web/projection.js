@@ -7,7 +7,7 @@ export class Projection {
   /// Radians about the vertical, then about the horizontal; the size of the canvas in pixels.
   constructor(yaw, pitch, width, height) {
     const cy = Math.cos(yaw), sy = Math.sin(yaw), cp = Math.cos(pitch), sp = Math.sin(pitch);
-    this.scale = 0.52 * Math.min(width, height);
+    this.scale = 0.58 * Math.min(width, height);
     this.center = [width / 2, height / 2];
     /// What a unit step along each axis is on the screen (x right, y down, depth away).
     this.steps = [

@@ -83,9 +83,9 @@ export class Service {
     }
   }
 
-  /// Nobody waits for it: what is canceled late ends by itself.
-  cancel(id) {
-    this.call(`/v1/renders/${id}/cancel`, {method: 'POST'}).catch(() => {});
+  /// Nobody waits for it; what is being traced ends at once.
+  remove(id) {
+    this.call(`/v1/renders/${id}`, {method: 'DELETE'}).catch(() => {});
   }
 
   /// False where the user gives none. One question for all calls that wait for it.

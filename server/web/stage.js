@@ -55,7 +55,7 @@ export class Stage {
     const url = URL.createObjectURL(pin.blob);
     const name = pointText(pin.state);
     const button = (label, about, onclick) =>
-        element('button', {type: 'button', onclick, 'aria-label': `${about} ${name}`}, label);
+        element('button', {type: 'button', onclick, 'aria-label': `${label}: ${about} ${name}`}, label);
     pin.url = url;
     pin.thumb = element('li', {class: 'pin'},
         element('button', {
@@ -64,9 +64,9 @@ export class Stage {
         }, element('img', {src: url, alt: '', width: 96, height: 96})),
         element('p', {}, name, element('br'), [errorText(pin.error), `${pin.samples} samples`].filter(Boolean).join(', ')),
         element('div', {class: 'actions'},
-            button('Beside', 'Compare side by side with', () => this.#compare(pin, 'beside')),
-            button('Wipe', 'Wipe between this view and', () => this.#compare(pin, 'wipe')),
-            button('Remove', 'Remove', () => this.#remove(pin))));
+            button('Beside', 'compare with', () => this.#compare(pin, 'beside')),
+            button('Wipe', 'between this view and', () => this.#compare(pin, 'wipe')),
+            button('Remove', 'the view', () => this.#remove(pin))));
     this.#pins.push(pin);
     byId('pins').append(pin.thumb);
     this.#onChange();

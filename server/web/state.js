@@ -8,7 +8,7 @@ export const defaults = Object.freeze({
   environment: 'forest',            // a name, or {constant: [r, g, b]}
   rotation: 0, azimuth: 0, elevation: 0, distance: 90,  // degrees, degrees, degrees, mm
   view: '',                         // 'display/view' of /v1/displays, '': the first
-  size: 512, samples: 256,
+  size: 512, samples: 64,
 });
 
 /// The keys whose values go through the address as JSON where they are no text.

@@ -173,6 +173,36 @@ TEST(PartialImageTest, RedevelopmentComesFromMemoryAndFromTheDiskToTheSameBits) 
       << "what is gone from the disk is not served from memory";
 }
 
+TEST(PartialImageTest, AnExplorableFilmIsOnTheDiskWhenItIsPutDown) {
+  const TempFolder undisturbed, restarted;
+  std::atomic<int> passes = 0;
+  Engine counting;
+  counting.trace = [&](const Scene& scene, const Pass& pass, int threads, std::stop_token stop) {
+    auto film = trace_pass(scene, pass, threads, stop);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ++passes;
+    return film;
+  };
+  std::string expected, id;
+  int planned = 0;
+  {
+    TestService service(undisturbed.path(), counting);
+    expected = service.exr(service.wait(service.submit(explorable_request(64)).id).id);
+    planned = passes.exchange(0);
+  }
+  {
+    TestService service(restarted.path(), counting);
+    id = service.submit(explorable_request(64)).id;
+    ASSERT_TRUE(eventually([&] { return passes >= 3; }));
+    service.service.shut_down();
+    ASSERT_FALSE(api::is_end(service.state(id)));
+  }
+  TestService service(restarted.path(), counting);
+  EXPECT_EQ(service.wait(id).state, api::JobState::succeeded);
+  EXPECT_EQ(service.exr(id), expected);
+  EXPECT_LE(passes, planned + 1) << "but for the pass that was stopped, none was traced again";
+}
+
 TEST(ExplorableCacheTest, KeepsTheLatestWithinItsBytesAndOneAtAnySize) {
   int read = 0;
   const auto film = [&] {

@@ -58,7 +58,7 @@ test('the page loads, and shows a picture that grows', async t => {
   await page.waitForFunction(() => document.getElementById('picture').src.startsWith('blob:'));
   await shoot(page, 'first-view');
   await finished(page);
-  assert.match(await page.locator('#status').textContent(), /512 px · 256 of 256 samples · error [0-9.]+ %/);
+  assert.match(await page.locator('#status').textContent(), /512 px · 64 of 64 samples · error [0-9.]+ %/);
   await shoot(page, 'desktop-light');
 });
 
@@ -164,6 +164,19 @@ test('the keyboard reaches and moves everything', async t => {
   assert.ok(visited.has('BODY'), 'the focus leaves the page at its end');
 });
 
+test('who changes one control and goes on to the next finds it there', async t => {
+  const page = await opened(t);
+  const ior = page.locator('[data-pointer="/material/ior"]'), g = page.locator('[data-pointer="/material/anisotropy"]');
+  await ior.fill('1.4');
+  await g.click();
+  assert.ok(await g.evaluate(control => control === document.activeElement));
+  await page.keyboard.press('Control+a');
+  await page.keyboard.type('0.25');
+  await page.keyboard.press('Tab');
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.pointer), '/material/pigment');
+  assert.match(page.url(), /ior=1\.4&anisotropy=0\.25/);
+});
+
 test('a link restores the view', async t => {
   const page = await opened(t,
       `absorption=0.8&roughness=0.1&scattering=0.6&absorber=%7B%22rgb%22%3A%5B0.2%2C0.5%2C1%5D%7D&ior=1.4&environment=sunrise&${quick}`);
@@ -265,12 +278,12 @@ test('axe finds nothing serious, in light and dark, on a desk and on a phone', a
   await page.locator('#tab-sweep').click();
   await expectAccessible(page, 'sweep');
 
-  const dark = await opened(t, '', {colorScheme: 'dark'});
+  const dark = await opened(t, 'size=384&samples=16', {colorScheme: 'dark'});
   await finished(dark);
   await expectAccessible(dark, 'dark');
   await shoot(dark, 'desktop-dark');
 
-  const phone = await opened(t, '', {viewport: {width: 390, height: 844}, hasTouch: true, reducedMotion: 'reduce'});
+  const phone = await opened(t, 'size=384&samples=16', {viewport: {width: 390, height: 844}, hasTouch: true, reducedMotion: 'reduce'});
   await finished(phone);
   await expectAccessible(phone, 'phone');
   const overflow = await phone.evaluate(() => document.documentElement.scrollWidth - innerWidth);

@@ -8,7 +8,7 @@ import {
 const odd = {
   ...defaults, absorption: 0.123, roughness: 1, scattering: 0, absorber: {rgb: [0.2, 1, 0.5]}, ior: 1.33,
   anisotropy: -0.4, pigment: 0.02, object: {type: 'box', width_mm: 3}, environment: {constant: [1, 1, 1]},
-  rotation: 90, azimuth: -30, elevation: 20, distance: 50, view: 'sRGB/plain', size: 256, samples: 64,
+  rotation: 90, azimuth: -30, elevation: 20, distance: 50, view: 'sRGB/plain', size: 256, samples: 16,
 };
 
 test('an address holds the whole state', () => {
