@@ -135,7 +135,9 @@ export class ObjectControls extends Panel {
 
   build({object}) {
     const kind = this.#objects.find(({name}) => name === object.type);
-    const choose = select(this.#objects.map(({name}) => name), object.type, name =>
+    const names = this.#objects.map(({name}) => name);
+    if (!kind) names.unshift(object.type);  // of a link; the service says what it thinks of it
+    const choose = select(names, object.type, name =>
       this.tell({object: withDefaults(this.#objects.find(other => other.name === name))}, true));
     return [
       field('Object', choose, {pointer: '/scene/object', hint: kind?.description}),

@@ -35,14 +35,13 @@ export class Stage {
     byId('pin').addEventListener('click', () => this.pin());
     byId('compare-none').addEventListener('click', () => this.#compare(null, 'single'));
     byId('wipe-at').addEventListener('input', event => this.#wipeAt(event.target.value));
-    this.#dragWipe(byId('frame-now'));
+    this.#dragWipe(byId('view'));
   }
 
   get pinnedPoints() {
     return this.#pins.map(({state}) => state);
   }
 
-  /// `fresh`: not a better picture of the same, but another one.
   show(view) {
     this.#now = view;
     put(byId('picture'), view.blob, `Rendered at ${pointText(view.state)}`);
@@ -109,16 +108,16 @@ export class Stage {
     byId('stage').style.setProperty('--wipe', `${percent}%`);
   }
 
-  #dragWipe(frame) {
+  #dragWipe(view) {
     const follow = event => {
       if (byId('stage').dataset.mode !== 'wipe' || event.buttons !== 1) return;
-      const {left, width} = frame.getBoundingClientRect();
+      const {left, width} = view.getBoundingClientRect();
       const percent = Math.min(100, Math.max(0, 100 * (event.clientX - left) / width));
       byId('wipe-at').value = percent;
       this.#wipeAt(percent);
     };
-    frame.addEventListener('pointerdown', follow);
-    frame.addEventListener('pointermove', follow);
-    frame.addEventListener('dragstart', event => event.preventDefault());
+    view.addEventListener('pointerdown', follow);
+    view.addEventListener('pointermove', follow);
+    view.addEventListener('dragstart', event => event.preventDefault());
   }
 }

@@ -210,7 +210,7 @@ export class Tracer {
       if (!film) continue;
       const {samples} = film;
       try {
-        const blob = await this.picture(film, state);
+        const blob = await this.picture(film, state, film.glance ? 'jpeg' : 'png');  // quicker to make
         if (run.over) continue;
         this.#on.picture(blob, film, state, samples);
         run.young = false;
@@ -226,7 +226,7 @@ export class Tracer {
   }
 
   /// A film through the state's absorber.
-  async picture(film, state, format = 'png') {
+  async picture(film, state, format) {
     const fields = new URLSearchParams({format, ...(film.glance ? displayQuery(state) : developQuery(state))});
     if (format === 'exr') {
       fields.delete('display');
