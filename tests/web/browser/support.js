@@ -68,7 +68,7 @@ export async function token() {
   const entry = /\{.*\}/.exec(text)[0];
   const file = path.join(await mkdtemp(path.join(tmpdir(), 'translucube-token-')), 'tokens.json');
   await writeFile(file, `{"tokens": [${entry}]}`);
-  return {file, text: text.split('\n')[0].trim()};
+  return {file, text: /once:\s+(\S+)/.exec(text)[1]};
 }
 
 export async function launch() {
