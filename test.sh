@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 # Left out under the sanitizers: the statistical suites of the light transport. They take 5 to 20
 # times longer there, through the same code as the few short renders that stay in.
-statistical=${STATISTICAL:-'^(WhiteFurnace|MeanPathLength|Slab|Ball|CameraInside|Variance|RelativeError|Sampling|Limit|FurnaceGrid|Furnace/HardCases?|HardCases?|Pigment|Microsurface|LargeSteps|MeshDistance|Walk|Dipole[A-Za-z]*|ExplorableFilm|LanesOfSeveralAbsorptions|Haze|Clear(Plate|Slab)|ScatteringSlab|StandardErrors|Speed|Jumps|InfinitelyDenseBody|Connections|RoughConnections|MicrosurfaceBatch|Energy|Developed|DenseWhiteSlab|BlackBody|Bits|Colour|SingleScattering|PigmentSlab|Adding|Efficiency)\.'}
+statistical=${STATISTICAL:-'^(WhiteFurnace|MeanPathLength|Slab|Ball|CameraInside|Variance|RelativeError|Sampling|Limit|FurnaceGrid|Furnace/HardCases?|HardCases?|Pigment|Microsurface|LargeSteps|MeshDistance|Walk|Dipole[A-Za-z]*|ExplorableFilm|LanesOfSeveralAbsorptions|Haze|Clear(Plate|Slab)|ScatteringSlab|StandardErrors|Speed|Jumps|InfinitelyDenseBody|Connections|RoughConnections|MicrosurfaceBatch|Energy|Developed|DenseWhiteSlab|BlackBody|Bits|Colour|SingleScattering|PigmentSlab|Adding|Efficiency|Backdrop|WidePlate|OilFilm|Box)\.'}
 parts=${PARTS:-release asan tsan fuzz}
 
 began=$SECONDS

@@ -21,7 +21,7 @@ std::string backdrop(const std::string& value) {
 }
 std::string film(const std::string& value) { return material_with(R"("oil_film":)" + value); }
 
-TEST(Objects, OfTheListingAreTakenByTheirNames) {
+TEST(SceneObjects, OfTheListingAreTakenByTheirNames) {
   const json listing = json::parse(objects_json(shipped_catalog()));
   std::vector<std::string> names;
   for (const json& part : listing["objects"]) {
@@ -39,7 +39,7 @@ TEST(Objects, OfTheListingAreTakenByTheirNames) {
   EXPECT_THAT(names, ElementsAre("sphere", "plate", "box", "wedge", "bowl", "mesh"));
 }
 
-TEST(Objects, KeepTheirDefaultsWhereTheRequestSaysNothing) {
+TEST(SceneObjects, KeepTheirDefaultsWhereTheRequestSaysNothing) {
   EXPECT_EQ(accepted(object(R"("type":"plate","thickness_mm":0.5)")).object,
             ObjectRequest(PlateObject{40, 40, 0.5}));
   EXPECT_EQ(accepted(object(R"("type":"bowl")")).object, ObjectRequest(BowlObject{20, 3}));
@@ -48,7 +48,7 @@ TEST(Objects, KeepTheirDefaultsWhereTheRequestSaysNothing) {
             ObjectSpec(WedgeObject{40, 40, 1, 10}));
 }
 
-TEST(Objects, OfAnotherConfigurationKeepItsDefaults) {
+TEST(SceneObjects, OfAnotherConfigurationKeepItsDefaults) {
   Catalog catalog = shipped_catalog();
   catalog.defaults.object = BowlObject{50, 5};
   EXPECT_EQ(accepted(object(R"("thickness_mm":2)"), catalog).object,
@@ -61,12 +61,12 @@ TEST(Objects, OfAnotherConfigurationKeepItsDefaults) {
     }
 }
 
-TEST(Objects, UnknownTypeTellsTheKnownOnes) {
+TEST(SceneObjects, UnknownTypeTellsTheKnownOnes) {
   EXPECT_THAT(fault_at("/scene/object/type", object(R"("type":"teapot","lid":1)")),
               HasSubstr("sphere, plate, box, wedge, bowl, mesh"));
 }
 
-TEST(Objects, TellAllTheirFaultsAtOnce) {
+TEST(SceneObjects, TellAllTheirFaultsAtOnce) {
   EXPECT_THAT(pointers(object(R"("type":"box","width_mm":0,"height_mm":"x","radius_mm":1)")),
               UnorderedElementsAre("/scene/object/width_mm", "/scene/object/height_mm",
                                    "/scene/object/radius_mm"));
@@ -77,7 +77,7 @@ TEST(Objects, TellAllTheirFaultsAtOnce) {
   accepted(object(R"("type":"wedge","thin_mm":4,"thick_mm":4)"));
 }
 
-TEST(Backdrop, IsAbsentUnlessAskedFor) {
+TEST(SceneBackdrop, IsAbsentUnlessAskedFor) {
   EXPECT_FALSE(accepted(backdrop("false")).backdrop);
   EXPECT_EQ(accepted(backdrop("{}")).backdrop, BackdropSpec{});
   const auto spec = scene_spec(
@@ -87,7 +87,7 @@ TEST(Backdrop, IsAbsentUnlessAskedFor) {
   EXPECT_EQ(spec.backdrop, (BackdropSpec{BackdropKind::print, Pattern::grid, 3, 4, 0.8, 0.1}));
 }
 
-TEST(Backdrop, TellsAllItsFaultsAtOnce) {
+TEST(SceneBackdrop, TellsAllItsFaultsAtOnce) {
   EXPECT_THAT(pointers(backdrop(R"({"type":"mirror","pattern":"dots","distance_mm":-1,)"
                                 R"("period_mm":0,"light":-1,"dark":true,"color":1})")),
               UnorderedElementsAre("/scene/backdrop/type", "/scene/backdrop/pattern",
@@ -98,13 +98,13 @@ TEST(Backdrop, TellsAllItsFaultsAtOnce) {
     fault_at("/scene/backdrop", backdrop(value));
 }
 
-TEST(Backdrop, OfAPrintReflectsNoMoreThanItReceives) {
+TEST(SceneBackdrop, OfAPrintReflectsNoMoreThanItReceives) {
   accepted(backdrop(R"({"light":1000})"));
   EXPECT_THAT(pointers(backdrop(R"({"type":"print","light":1.01,"dark":2})")),
               ElementsAre("/scene/backdrop/light", "/scene/backdrop/dark"));
 }
 
-TEST(OilFilm, HasADirectionAndAnOffset) {
+TEST(MaterialOilFilm, HasADirectionAndAnOffset) {
   EXPECT_FALSE(accepted(film("false")).material.oil_film);
   EXPECT_EQ(accepted(film("{}")).material.oil_film, OilFilmRequest{});
   const auto spec =
@@ -113,7 +113,7 @@ TEST(OilFilm, HasADirectionAndAnOffset) {
   EXPECT_EQ(spec.material.oil_film->offset_mm, -2);
 }
 
-TEST(OilFilm, TellsItsFaults) {
+TEST(MaterialOilFilm, TellsItsFaults) {
   fault_at("/material/oil_film", film("true"));
   EXPECT_THAT(pointers(film(R"({"normal":[0,0,0],"offset_mm":"x","thickness":1})")),
               UnorderedElementsAre("/material/oil_film/normal", "/material/oil_film/offset_mm",

@@ -38,36 +38,38 @@ std::vector<Placed> bodies() {
   return {{Sphere{}, -1}, {make_box({0.7, 0.6, 0.1}), -0.1}, {Bowl(0.8), -1}};
 }
 
-void expect_white(Scene scene, const std::string& what) {
-  scene.width = scene.height = 24;
-  scene.camera = Camera({1.5, 2.2, 2.5}, {0, 0, 0}, {0, 1, 0}, 40, 24, 24);
-  const Film film = trace(scene, 128);
-  const Estimate e = image_mean(film);
-  EXPECT_NEAR(e.mean, 1, std::fmax(2e-3, 4 * e.standard_error)) << what;
-  EXPECT_LT(e.standard_error, 2.5e-3) << what;
-  EXPECT_EQ(film.counters.nan_samples, 0u);
-  EXPECT_LT(film.counters.truncated_energy / double(film.counters.camera_samples), 1e-4) << what;
-}
-
-TEST(WhiteFurnace, BeforeAWhiteBackdropAllVanishes) {
+void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
+  struct Setting {
+    double distance;
+    bool image;  ///< the environment: a map of radiance 1, or the same from everywhere
+  };
   for (const BackdropKind kind : {BackdropKind::light_table, BackdropKind::print})
-    for (const double distance : {0.0, 0.3})
+    for (const auto& [distance, image] : {Setting{0, false}, Setting{0.3, true}})
       for (const Placed& placed : bodies())
         for (const Material& m :
              {material(1.5, 0, 0), material(1.5, 0, 4), material(1.5, 0.3, 0),
-              material(1.5, 0.3, 4), material(1.5, 0, infinity), material(1.5, 0.3, infinity)})
-          for (const bool image : {false, true}) {
-            Scene scene = body(placed.shape, m);
-            scene.backdrop = plain(kind, 1, placed.back, distance);
-            if (image) scene.environment = white_front();
-            expect_white(std::move(scene), "shape " + std::to_string(placed.shape.index()) +
-                                               " kind " + std::to_string(int(kind)) + " at " +
-                                               std::to_string(distance) + " alpha " +
-                                               std::to_string(m.coefficients.alpha) + " sigma_s " +
-                                               std::to_string(m.coefficients.sigma_s) + " image " +
-                                               std::to_string(image));
-          }
+              material(1.5, 0.3, 4), material(1.5, 0, infinity), material(1.5, 0.3, infinity)}) {
+          Scene scene = body(placed.shape, m);
+          scene.backdrop = plain(kind, 1, placed.back, distance);
+          if (image) scene.environment = white_front();
+          scene.width = scene.height = size;
+          scene.camera = Camera({1.5, 2.2, 2.5}, {0, 0, 0}, {0, 1, 0}, 40, size, size);
+          const Film film = trace(scene, samples);
+          const Estimate e = image_mean(film);
+          SCOPED_TRACE(testing::Message()
+                       << "shape " << placed.shape.index() << " kind " << int(kind) << " at "
+                       << distance << " alpha " << m.coefficients.alpha << " sigma_s "
+                       << m.coefficients.sigma_s);
+          EXPECT_NEAR(e.mean, 1, 4 * e.standard_error + 1e-5);
+          EXPECT_LT(e.standard_error, largest_error);
+          EXPECT_EQ(film.counters.nan_samples, 0u);
+          EXPECT_LT(film.counters.truncated_energy / double(film.counters.camera_samples), 1e-4);
+        }
 }
+
+TEST(WhiteFurnace, BeforeAWhiteBackdropAllVanishes) { expect_furnaces(32, 12, 1.2e-2); }
+
+TEST(LongWhiteFurnace, BeforeAWhiteBackdropAllVanishes) { expect_furnaces(1024, 24, 1e-3); }
 
 /// A wide plate of thickness 1 on a backdrop, seen along its normal; the light comes from the
 /// backdrop alone or, on a print, from all around.
@@ -93,7 +95,7 @@ TEST(Backdrop, IsSeenThroughGlassLessWhatItsFacesReflect) {
 TEST(Backdrop, ThroughAScatteringPlateIsVanDeHulstsTransmittance) {
   // By reciprocity: what diffuse light sends to the normal is what the normal sends to all sides.
   const Estimate t = plate_on(plain(BackdropKind::light_table, 1, -0.5, 0),
-                              material(1, 0, 90 * 0.02, 0.75), 10 * 0.02f, 0, 1024);
+                              material(1, 0, 90 * 0.02, 0.75), 10 * 0.02f, 0, 512);
   EXPECT_NEAR(t.mean / 0.66096, 1, 5e-3) << t.standard_error;
 }
 
@@ -113,10 +115,10 @@ TEST(Backdrop, UnderGlassAPrintIsDarkerByItsRoundTrips) {
   // sums up: T rho T_d / (1 - rho (1 - T_d)).
   const double f = 0.04, t = (1 - f) / (1 + f), t_d = diffuse_transmittance_of_glass(1.5);
   for (const double rho : {0.2, 0.8}) {
-    const Estimate e = plate_on(plain(BackdropKind::print, float(rho), -0.5, 0.5),
-                                material(1.5, 0, 0), 0, 1, 1024);
-    EXPECT_NEAR(e.mean, 1 - t + t * rho * t_d / (1 - rho * (1 - t_d)), 2e-3) << rho;
-    EXPECT_LT(e.standard_error, 7e-4);
+    const Estimate e =
+        plate_on(plain(BackdropKind::print, float(rho), -0.5, 0.5), material(1.5, 0, 0), 0, 1, 192);
+    EXPECT_NEAR(e.mean, 1 - t + t * rho * t_d / (1 - rho * (1 - t_d)), 4 * e.standard_error) << rho;
+    EXPECT_LT(e.standard_error, 1.6e-3);
   }
 }
 
@@ -166,14 +168,14 @@ TEST(Backdrop, LookingForLightDoesNotChangeTheMean) {
           scene.next_event_estimation = looking;
           scene.width = scene.height = 16;
           scene.camera = Camera({1.5, 1.2, 3}, {0, 0, 0}, {0, 1, 0}, 45, 16, 16);
-          estimates[looking] = image_mean(trace(scene, looking ? 128 : 512));
+          estimates[looking] = image_mean(trace(scene, looking ? 64 : 256));
         }
         const auto& [without, with] = estimates;
         const double error = std::hypot(without.standard_error, with.standard_error);
         EXPECT_NEAR(with.mean, without.mean, 4 * error)
             << placed.shape.index() << " kind " << int(kind) << " alpha " << m.coefficients.alpha
             << " sigma_s " << m.coefficients.sigma_s;
-        EXPECT_LT(error / with.mean, 0.05);
+        EXPECT_LT(error / with.mean, 0.08);
       }
 }
 

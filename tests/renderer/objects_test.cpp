@@ -125,27 +125,33 @@ std::vector<Material> materials_of_the_furnace() {
           material(1.5, 0, std::numeric_limits<double>::infinity())};
 }
 
-TEST(WhiteFurnace, PlatesBoxesWedgesAndBowlsVanish) {
+void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
   for (const Body& which : bodies())
     for (const Material& m : materials_of_the_furnace()) {
       Scene scene = body(which.shape, m);
-      scene.width = scene.height = 24;
-      scene.camera = Camera({1.1, 2.2, 2.5}, {0, -0.1, 0}, {0, 1, 0}, 30, 24, 24);
-      const Film film = trace(scene, 128);
+      scene.width = scene.height = size;
+      scene.camera = Camera({1.1, 2.2, 2.5}, {0, -0.1, 0}, {0, 1, 0}, 30, size, size);
+      const Film film = trace(scene, samples);
       const Estimate e = image_mean(film);
-      EXPECT_NEAR(e.mean, 1, 2e-3) << which.name << " alpha " << m.coefficients.alpha << " sigma_s "
-                                   << m.coefficients.sigma_s << " +- " << e.standard_error;
-      EXPECT_LT(e.standard_error, 7e-4) << which.name;
+      EXPECT_NEAR(e.mean, 1, 4 * e.standard_error + 1e-5)
+          << which.name << " alpha " << m.coefficients.alpha << " sigma_s "
+          << m.coefficients.sigma_s;
+      EXPECT_LT(e.standard_error, largest_error) << which.name;
       EXPECT_EQ(film.counters.nan_samples, 0u);
       EXPECT_LT(film.counters.truncated_energy / double(film.counters.camera_samples), 1e-5)
           << which.name;
     }
 }
 
+TEST(WhiteFurnace, PlatesBoxesWedgesAndBowlsVanish) { expect_furnaces(32, 16, 4e-3); }
+
+TEST(LongWhiteFurnace, PlatesBoxesWedgesAndBowlsVanish) { expect_furnaces(2048, 24, 3e-4); }
+
 /// The length inside of isotropic light, over the volume times ior^2: light that leaves and comes
 /// back counts on. 1, as every ray of diffuse light has 4 V / S ior^2 in the mean.
-double length_over_volume(const Body& which, const Material& m, std::uint32_t samples) {
-  constexpr int directions = 200, size = 16;
+double length_over_volume(const Body& which, const Material& m, int directions,
+                          std::uint32_t samples) {
+  constexpr int size = 16;
   constexpr double half = 1.0, distance = 1e5;
   double sum = 0;
   for (int i = 0; i < directions; ++i) {
@@ -160,8 +166,8 @@ double length_over_volume(const Body& which, const Material& m, std::uint32_t sa
 
 TEST(MeanPathLength, InPlatesBoxesWedgesAndBowlsIsThatOfTheirVolume) {
   for (const Body& which : bodies())
-    for (const Material& m : {material(1.5, 0, 2), material(1.5, 0.3, 0), material(1.33, 0.2, 5)})
-      EXPECT_NEAR(length_over_volume(which, m, 8), 1, 0.025)
+    for (const Material& m : {material(1.5, 0, 2), material(1.33, 0.3, 0)})
+      EXPECT_NEAR(length_over_volume(which, m, 100, 4), 1, 0.05)
           << which.name << " alpha " << m.coefficients.alpha;
 }
 
@@ -169,7 +175,7 @@ TEST(LongMeanPathLength, InPlatesBoxesWedgesAndBowlsIsThatOfTheirVolumeToHalfAPe
   for (const Body& which : bodies())
     for (const Material& m :
          {material(1.5, 0, 2), material(1.5, 0.3, 0), material(1.33, 0.2, 5), material(1.5, 0, 30)})
-      EXPECT_NEAR(length_over_volume(which, m, 128), 1, 0.005)
+      EXPECT_NEAR(length_over_volume(which, m, 400, 48), 1, 0.005)
           << which.name << " alpha " << m.coefficients.alpha;
 }
 
@@ -182,8 +188,8 @@ Estimate lit_plate(const Material& m, float sigma_a, bool above, std::uint32_t s
 
 TEST(WidePlate, OfMatchedIndexMeetsVanDeHulst) {
   const Material m = material(1, 0, 90 * 0.02, 0.75);
-  EXPECT_NEAR(lit_plate(m, 10 * 0.02f, true, 512).mean / 0.09739, 1, 1e-2);
-  EXPECT_NEAR(lit_plate(m, 10 * 0.02f, false, 512).mean / 0.66096, 1, 5e-3);
+  EXPECT_NEAR(lit_plate(m, 10 * 0.02f, true, 128).mean / 0.09739, 1, 2e-2);
+  EXPECT_NEAR(lit_plate(m, 10 * 0.02f, false, 128).mean / 0.66096, 1, 1e-2);
 }
 
 TEST(WidePlate, ClearAndAbsorbingReflectsBetweenItsFaces) {
@@ -205,7 +211,7 @@ TEST(Box, OfPlanesLooksLikeTheMesh) {
     const Estimate a = image_mean(trace(planes, 256)), b = image_mean(trace(triangles, 256));
     const double error = std::hypot(a.standard_error, b.standard_error);
     EXPECT_NEAR(a.mean, b.mean, 4 * error);
-    EXPECT_LT(error / a.mean, 4e-3);
+    EXPECT_LT(error / a.mean, 6e-3);
   }
 }
 

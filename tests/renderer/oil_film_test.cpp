@@ -18,29 +18,40 @@ Scene oiled(Shape shape, const Material& m, double offset, std::uint64_t seed = 
   return scene;
 }
 
-TEST(WhiteFurnace, AHalfOiledBodyVanishes) {
+void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
   const Shape shapes[] = {Sphere{}, make_box({0.6, 0.5, 0.2}), Bowl(0.8),
                           build_mesh(icosphere(3)).mesh};
   for (const Shape& shape : shapes)
     for (const Material& m : {material(1.5, 0.3, 0), material(1.5, 0.3, 4), material(1.33, 1, 50),
                               material(1.5, 0.3, infinity)}) {
       Scene scene = oiled(shape, m, 0);
-      scene.width = scene.height = 24;
-      scene.camera = Camera({0.8, 1.2, 3}, {0, 0, 0}, {0, 1, 0}, 32, 24, 24);
-      const Film film = trace(scene, 128);
+      scene.width = scene.height = size;
+      scene.camera = Camera({0.8, 1.2, 3}, {0, 0, 0}, {0, 1, 0}, 32, size, size);
+      const Film film = trace(scene, samples);
       const Estimate e = image_mean(film);
-      EXPECT_NEAR(e.mean, 1, 2e-3)
-          << shape.index() << " sigma_s " << m.coefficients.sigma_s << " +- " << e.standard_error;
-      EXPECT_LT(e.standard_error, 8e-4);
+      EXPECT_NEAR(e.mean, 1, 4 * e.standard_error)
+          << shape.index() << " sigma_s " << m.coefficients.sigma_s;
+      EXPECT_LT(e.standard_error, largest_error);
       EXPECT_LT(film.counters.truncated_energy / double(film.counters.camera_samples), 1e-5);
     }
 }
 
+TEST(WhiteFurnace, AHalfOiledBodyVanishes) { expect_furnaces(32, 16, 4e-3); }
+
+TEST(LongWhiteFurnace, AHalfOiledBodyVanishes) { expect_furnaces(2048, 24, 3e-4); }
+
 TEST(MeanPathLength, UnderAFilmOverHalfOfASphereIsTheSame) {
+  // The film anywhere: then parallel light over the disc is diffuse light over the surface.
+  constexpr int places = 200;
   for (const double sigma_s : {0.0, 2.0}) {
-    Scene scene = path_scene(Sphere{}, material(1.5, 0.3, sigma_s));
-    scene.oiled = OiledPart{{0.6, 0, 0.8}, 0};
-    EXPECT_NEAR(over_the_disc(image_mean(trace(scene, 512)), 0).mean / 3, 1, 1e-2) << sigma_s;
+    double sum = 0;
+    for (int i = 0; i < places; ++i) {
+      Rng rng(hash_combine(11, i));
+      Scene scene = path_scene(Sphere{}, material(1.5, 0.3, sigma_s), hash_combine(12, i), 16);
+      scene.oiled = OiledPart{sample_isotropic(rng), 0};
+      sum += over_the_disc(image_mean(trace(scene, 8)), 0).mean;
+    }
+    EXPECT_NEAR(sum / places / 3, 1, 0.02) << sigma_s;
   }
 }
 
@@ -53,13 +64,13 @@ Estimate under_half_a_sky(Scene scene, std::uint32_t samples) {
 TEST(OilFilm, OverAllOfABodyMakesItSmooth) {
   for (const double sigma_s : {0.0, 3.0, infinity}) {
     const Estimate film =
-        under_half_a_sky(oiled(Sphere{}, material(1.5, 0.5, sigma_s), -2, 1), 1024);
-    const Estimate smooth = under_half_a_sky(body(Sphere{}, material(1.5, 0, sigma_s), 2), 1024);
-    const Estimate rough = under_half_a_sky(body(Sphere{}, material(1.5, 0.5, sigma_s), 3), 1024);
+        under_half_a_sky(oiled(Sphere{}, material(1.5, 0.5, sigma_s), -2, 1), 128);
+    const Estimate smooth = under_half_a_sky(body(Sphere{}, material(1.5, 0, sigma_s), 2), 128);
+    const Estimate rough = under_half_a_sky(body(Sphere{}, material(1.5, 0.5, sigma_s), 3), 128);
     const double error = std::hypot(film.standard_error, smooth.standard_error);
     EXPECT_NEAR(film.mean, smooth.mean, 4 * error + 1e-4) << sigma_s;
     if (sigma_s == 0) {
-      EXPECT_GT(std::fabs(film.mean - rough.mean), 10 * error);
+      EXPECT_GT(std::fabs(film.mean - rough.mean), 6 * error);
     }
   }
 }
@@ -77,7 +88,7 @@ TEST(OilFilm, LookingForLightDoesNotChangeTheMean) {
   for (const bool looking : {false, true}) {
     Scene scene = oiled(Sphere{}, material(1.5, 0.4, 3), 0.1, 7 + looking);
     scene.next_event_estimation = looking;
-    estimates[looking] = under_half_a_sky(std::move(scene), 1024);
+    estimates[looking] = under_half_a_sky(std::move(scene), 256);
   }
   const double error = std::hypot(estimates[0].standard_error, estimates[1].standard_error);
   EXPECT_NEAR(estimates[0].mean, estimates[1].mean, 4 * error);
