@@ -15,11 +15,13 @@ extern "C" const translucube::BallExit translucube_ball_exits[];
 
 namespace translucube {
 
+const BallExit* ball_exits() { return translucube_ball_exits; }
+
 BallCrossing cross_ball(int level, Rng& rng) {
   assert(level >= 0 && level < ball_levels);
   const int table = std::min(level, tabulated_levels - 1);
   BallCrossing crossing = cross_ball(
-      {translucube_ball_exits + std::size_t(table) * exits_per_ball, exits_per_ball}, rng);
+      {ball_exits() + std::size_t(table) * exits_per_ball, exits_per_ball}, rng);
   crossing.length *= mean_ball_length(level) / mean_ball_length(table);
   return crossing;
 }

@@ -35,10 +35,13 @@ inline constexpr int ball_levels = 40, tabulated_levels = 8, exits_per_ball = 81
 /// Optical radius of a level [mean free paths].
 constexpr double ball_radius(int level) { return static_cast<double>(std::uint64_t{2} << level); }
 
-/// Mean length from the centre out, (tau + z0)^2 / 2 with Milne's extrapolation length z0 (Hopf
-/// 1934): the simulation confirms it to 0.1 % from optical radius 2 on.
+/// Milne's extrapolation length [mean free paths] (Hopf 1934).
+inline constexpr double milne_length = 0.710446;
+
+/// Mean length from the centre out, (tau + z0)^2 / 2 with z0 Milne's length: the simulation
+/// confirms it to 0.1 % from optical radius 2 on.
 constexpr double mean_ball_length(int level) {
-  const double extrapolated = ball_radius(level) + 0.710446;
+  const double extrapolated = ball_radius(level) + milne_length;
   return 0.5 * extrapolated * extrapolated;
 }
 
@@ -63,6 +66,9 @@ inline BallCrossing cross_ball(std::span<const BallExit> exits, Rng& rng) {
   return {outward, Frame(outward).to_world({sine * std::cos(phi), sine * std::sin(phi), exit.mu}),
           exit.length};
 }
+
+/// The tables, one after the other: tabulated_levels x exits_per_ball.
+const BallExit* ball_exits();
 
 /// Crosses the ball of a level in [0, ball_levels).
 BallCrossing cross_ball(int level, Rng& rng);

@@ -72,13 +72,14 @@ class Collector {
   }
 
   void note(const char* event, const Path& path) {
+    note(event, path.p, path.d, path.length, path.weight);
+  }
+  void note(const char* event, Vec3 p, Vec3 d, double length, double weight) {
     if (log_ == nullptr) return;
     char line[256];
-    std::snprintf(
-        line, sizeof line,
-        "%-9s p (%.9g, %.9g, %.9g) d (%.6f, %.6f, %.6f) length %.9g weight %.9g pdf %.6g\n", event,
-        path.p.x, path.p.y, path.p.z, path.d.x, path.d.y, path.d.z, path.length, path.weight,
-        path.pdf);
+    std::snprintf(line, sizeof line,
+                  "%-9s p (%.9g, %.9g, %.9g) d (%.6f, %.6f, %.6f) length %.9g weight %.9g\n", event,
+                  p.x, p.y, p.z, d.x, d.y, d.z, length, weight);
     *log_ += line;
   }
 

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "renderer/environment_batch.h"
+
 namespace translucube {
 
 using std::numbers::pi;
@@ -13,12 +15,20 @@ namespace {
 
 constexpr int block_size = 16, cells_of_a_block = block_size * block_size;
 
+/// How many of so many ascending values are not above x.
+template <int count>
+int passed(const float* values, float x) {
+  int n = 0;
+  for (int i = 0; i < count; ++i) n += values[i] <= x;
+  return n;
+}
+
 }  // namespace
 
 struct ImageEnvironment::Tables {
   std::vector<Texel> texels;
   std::vector<double> blocks;
-  std::vector<float> cells;
+  std::vector<float> rows, cells;
 };
 
 ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, double scale,
@@ -34,6 +44,7 @@ ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, doub
   build_sampling(*tables);
   texels_ = tables->texels;
   blocks_ = tables->blocks;
+  rows_ = tables->rows;
   cells_ = tables->cells;
   tables_ = tables;
   build_irradiance();
@@ -48,7 +59,7 @@ bool ImageEnvironment::hides(int column) const {
 }
 
 void ImageEnvironment::build_sampling(Tables& tables) {
-  auto& [texels, blocks, cells] = tables;
+  auto& [texels, blocks, rows, cells] = tables;
   // The integral of the bilinear interpolant over a cell is its tent filter (1, 6, 1) / 8.
   std::vector<double> across;  // the filter along the rows
   across.reserve(texels.size());
@@ -95,6 +106,7 @@ void ImageEnvironment::build_sampling(Tables& tables) {
   const int blocks_down = (height_ + block_size - 1) / block_size;
   blocks.reserve(std::size_t(blocks_across_) * blocks_down);
   cells.reserve(blocks.capacity() * cells_of_a_block);
+  rows.reserve(blocks.capacity() * block_size);
   double all = 0;
   for (int by = 0; by < blocks_down; ++by)
     for (int bx = 0; bx < blocks_across_; ++bx) {
@@ -105,7 +117,10 @@ void ImageEnvironment::build_sampling(Tables& tables) {
         if (x < width_ && y < height_) sum += weight[std::size_t(y) * width_ + x];
         sums[i] = sum;
       }
-      for (const double s : sums) cells.push_back(sum > 0 ? static_cast<float>(s / sum) : 0);
+      for (int i = 0; i < cells_of_a_block; ++i) {
+        cells.push_back(sum > 0 ? static_cast<float>(sums[i] / sum) : 0);
+        if (i % block_size == block_size - 1) rows.push_back(cells.back());
+      }
       blocks.push_back(all += sum / static_cast<double>(n));
     }
   for (double& sum : blocks) sum /= all;
@@ -227,22 +242,36 @@ void ImageEnvironment::prefetch(float x, float y) const {
   __builtin_prefetch(upper + (row + 1 < height_ ? width_ : 0));
 }
 
-MapCoordinates ImageEnvironment::draw(Sample2 u) const {
-  const auto block = static_cast<std::size_t>(
-      std::upper_bound(blocks_.begin(), blocks_.end() - 1, u.u) - blocks_.begin());
-  const double before = block > 0 ? blocks_[block - 1] : 0;
-  const float rest =
-      std::fmin(static_cast<float>((u.u - before) / (blocks_[block] - before)), 0x1.fffffep-1f);
-  const float* cells = &cells_[block * cells_of_a_block];
-  const auto cell =
-      static_cast<int>(std::upper_bound(cells, cells + cells_of_a_block - 1, rest) - cells);
+ImageEnvironment::Draw ImageEnvironment::draw_block(double u, std::size_t at_least) const {
+  const auto last = blocks_.end() - 1;
+  auto block = blocks_.begin() + static_cast<std::ptrdiff_t>(at_least);
+  if (at_least > 0 && u < block[-1])
+    block = std::upper_bound(blocks_.begin(), last, u);
+  else
+    for (int step = 0; block < last && *block <= u; ++step)
+      block = step < 16 ? block + 1 : std::upper_bound(block, last, u);
+  const double before = block > blocks_.begin() ? block[-1] : 0;
+  return {static_cast<std::size_t>(block - blocks_.begin()),
+          std::fmin(static_cast<float>((u - before) / (*block - before)), 0x1.fffffep-1f), 0};
+}
+
+void ImageEnvironment::draw_row(Draw& draw) const {
+  draw.row = passed<block_size - 1>(&rows_[draw.block * block_size], draw.rest);
+}
+
+MapCoordinates ImageEnvironment::draw_cell(const Draw& draw, double v) const {
+  const float* cells = &cells_[draw.block * cells_of_a_block];
+  const float* row = cells + draw.row * block_size;
+  const int column = passed<block_size - 1>(row, draw.rest);
+  const int cell = draw.row * block_size + column;
   const float below = cell > 0 ? cells[cell - 1] : 0;
-  const auto bx = static_cast<int>(block) % blocks_across_,
-             by = static_cast<int>(block) / blocks_across_;
-  const float x = static_cast<float>(bx * block_size + cell % block_size) +
-                  std::clamp((rest - below) / (cells[cell] - below), 0.0f, 1.0f);
-  const float y = static_cast<float>(by * block_size + cell / block_size) + static_cast<float>(u.v);
-  return {x, y, std::sin(static_cast<float>(pi) / static_cast<float>(height_) * y)};
+  const auto bx = static_cast<int>(draw.block) % blocks_across_,
+             by = static_cast<int>(draw.block) / blocks_across_;
+  const float x =
+      static_cast<float>(bx * block_size + column) +
+      std::clamp((draw.rest - below) / std::fmax(cells[cell] - below, 1e-30f), 0.0f, 1.0f);
+  const float y = static_cast<float>(by * block_size + draw.row) + static_cast<float>(v);
+  return {x, y, 0};
 }
 
 Vec3 ImageEnvironment::direction(MapCoordinates at) const {
@@ -252,23 +281,39 @@ Vec3 ImageEnvironment::direction(MapCoordinates at) const {
 }
 
 EnvironmentSample ImageEnvironment::sample(Sample2 u) const {
-  const MapCoordinates at = draw(u);
+  Draw draw = draw_block(u.u, 0);
+  draw_row(draw);
+  MapCoordinates at = draw_cell(draw, u.v);
+  at.sin_theta = std::sin(static_cast<float>(pi) / static_cast<float>(height_) * at.y);
   const Vec3 towards = direction(at);
   return {towards, seen(towards, value_at(at))};
 }
 
 std::vector<EnvironmentSample> ImageEnvironment::sample(std::span<const Sample2> u) const {
-  std::vector<MapCoordinates> places;
-  places.reserve(u.size());
+  std::vector<Draw> draws;
+  draws.reserve(u.size());
   for (const Sample2& sample : u) {
-    places.push_back(draw(sample));
-    prefetch(places.back().x, places.back().y);
+    draws.push_back(draw_block(sample.u, draws.empty() ? 0 : draws.back().block));
+    __builtin_prefetch(&rows_[draws.back().block * block_size]);
   }
-  std::vector<EnvironmentSample> samples;
-  samples.reserve(u.size());
-  for (const MapCoordinates& at : places) {
-    const Vec3 towards = direction(at);
-    samples.push_back({towards, seen(towards, value_at(at))});
+  for (Draw& draw : draws) {
+    draw_row(draw);
+    __builtin_prefetch(&cells_[draw.block * cells_of_a_block + draw.row * block_size]);
+  }
+  std::vector<EnvironmentSample> samples(u.size());
+  MapDirections batch;
+  for (std::size_t first = 0; first < u.size(); first += MapDirections::capacity) {
+    batch.size = std::min(MapDirections::capacity, u.size() - first);
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      const MapCoordinates at = draw_cell(draws[first + i], u[first + i].v);
+      prefetch(at.x, at.y);
+      batch.u[i] = at.x;
+      batch.v[i] = at.y;
+    }
+    batch.find(geometry());
+    for (std::size_t i = 0; i < batch.size; ++i)
+      samples[first + i] = {{batch.x[i], batch.y[i], batch.z[i]},
+                            value_at({batch.u[i], batch.v[i], batch.sin_theta[i]})};
   }
   return samples;
 }

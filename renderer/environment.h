@@ -61,10 +61,9 @@ class ImageEnvironment {
   /// Draws a direction in proportion to luminance times solid angle, a pixel cell at a time; nearby
   /// u.u give nearby directions, so that stratified numbers give stratified light.
   EnvironmentSample sample(Sample2 u) const;
-  /// Many of them; what they read of a map larger than the caches is on its way meanwhile.
+  /// Many of them, quickest where u.u ascends; what they read of a map larger than the caches is on
+  /// its way meanwhile. Directions in single precision.
   std::vector<EnvironmentSample> sample(std::span<const Sample2> u) const;
-  /// One, in the map.
-  MapCoordinates draw(Sample2 u) const;
   Vec3 direction(MapCoordinates at) const;
   /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order
   /// (Ramamoorthi and Hanrahan 2001): within a few percent, and possibly negative under a hard sun.
@@ -84,6 +83,16 @@ class ImageEnvironment {
     float r, g, b, weight;  ///< weight: probability of the pixel cell x number of cells
   };
   MapCoordinates coordinates(Vec3 direction) const;
+  // Drawing, step by step: each reads a cache line that is not likely to be near.
+  struct Draw {
+    std::size_t block;
+    float rest;  ///< of the number, within the block
+    int row;
+  };
+  Draw draw_block(double u, std::size_t at_least) const;
+  void draw_row(Draw& draw) const;
+  /// In the map, but for sin_theta.
+  MapCoordinates draw_cell(const Draw& draw, double v) const;
   Rgb bilinear(float x, float y) const;
   double cell_pdf(int x, int y, double sin_theta) const;
   struct Tables;
@@ -95,10 +104,10 @@ class ImageEnvironment {
   EnvironmentSide side_;
   std::span<const Texel> texels_;
   // The chances of the cells, block by block of the map and summed up: over the blocks, and within
-  // each (row by row, 1 at its end).
+  // each over its rows and over its cells (row by row, 1 at its end).
   int blocks_across_ = 0;
   std::span<const double> blocks_;
-  std::span<const float> cells_;
+  std::span<const float> rows_, cells_;
   std::array<Rgb, 9> irradiance_;         ///< coefficients of the polynomials of quadratic_basis()
   std::shared_ptr<const Tables> tables_;  ///< what the spans show: copies share it
 };

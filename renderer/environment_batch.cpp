@@ -35,6 +35,18 @@ void Coordinates(EnvironmentBatch& batch, const MapGeometry& map, EnvironmentBat
   }
 }
 
+void Directions(MapDirections& batch, const MapGeometry& map) {
+  const Real turn(2 * pi_f / map.width), polar(pi_f / map.height);
+  for (std::size_t i = 0; i < batch.size; i += hn::Lanes(D())) {
+    const Real azimuth = fnma(load(&batch.u[i]), turn, Real(pi_f + map.rotation));
+    const Real theta = load(&batch.v[i]) * polar, across = sin(theta);
+    hn::StoreU((across * sin(azimuth)).v, D(), &batch.x[i]);
+    hn::StoreU(cos(theta).v, D(), &batch.y[i]);
+    hn::StoreU((across * cos(azimuth)).v, D(), &batch.z[i]);
+    hn::StoreU(across.v, D(), &batch.sin_theta[i]);
+  }
+}
+
 }  // namespace translucube::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -42,6 +54,9 @@ HWY_AFTER_NAMESPACE();
 namespace translucube {
 
 HWY_EXPORT(Coordinates);
+HWY_EXPORT(Directions);
+
+void MapDirections::find(const MapGeometry& map) { HWY_DYNAMIC_DISPATCH(Directions)(*this, map); }
 
 void EnvironmentBatch::look_up(const ImageEnvironment& environment) {
   Floats u, v, sin_theta;

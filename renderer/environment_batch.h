@@ -20,4 +20,17 @@ struct EnvironmentBatch {
   void look_up(const ImageEnvironment& environment);
 };
 
+/// Places in the map whose directions are asked for together.
+struct MapDirections {
+  static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
+  using Floats = std::array<float, capacity>;
+
+  std::size_t size = 0;
+  Floats u, v;                ///< in: MapCoordinates' x and y
+  Floats x, y, z, sin_theta;  ///< out
+
+  /// direction(), in single precision.
+  void find(const MapGeometry& map);
+};
+
 }  // namespace translucube

@@ -80,6 +80,7 @@ struct Plane {
 };
 
 constexpr float tolerance = 3e-6f;  // [rad]
+constexpr float tiny = 1e-6f;
 
 struct Root {
   Turn x;
@@ -87,7 +88,8 @@ struct Root {
 };
 
 /// The root of psi = target between two values of h, where psi rises (or falls): Newton's method,
-/// by bisection where that leaves the bracket.
+/// by bisection where that leaves the bracket. A lane that has found it stands still, so that when
+/// its neighbours do does not matter.
 HWY_INLINE Root solve(const Plane& plane, Turn target, V low, V high, V guess, bool rises,
                       int steps) {
   V h = guess;
@@ -96,7 +98,8 @@ HWY_INLINE Root solve(const Plane& plane, Turn target, V low, V high, V guess, b
     const Angles a = plane.at(x);
     const Turn off = plane.psi(a) - target;
     const V residual = hn::Div(hn::Add(off.s, off.s), hn::Max(hn::Add(set(1), off.c), set(1e-3f)));
-    if (step == steps) return {x, hn::Lt(hn::Abs(residual), set(tolerance))};
+    const M found = hn::Lt(hn::Abs(residual), set(tolerance));
+    if (step == steps || hn::AllTrue(D(), found)) return {x, found};
     const M below = rises ? hn::Lt(residual, set(0)) : hn::Gt(residual, set(0));
     low = hn::IfThenElse(below, h, low);
     high = hn::IfThenElse(below, high, h);
@@ -105,20 +108,33 @@ HWY_INLINE Root solve(const Plane& plane, Turn target, V low, V high, V guess, b
         hn::Mul(hn::Mul(plane.slope(a), x.c), hn::Div(set(2), hn::MulAdd(h, h, set(1))));
     const V next = hn::Sub(h, hn::Div(residual, speed));
     const M inside = hn::And(hn::Ge(next, low), hn::Le(next, high));  // false for NaN
-    h = hn::IfThenElse(inside, next, hn::Mul(set(0.5f), hn::Add(low, high)));
+    const V moved = hn::IfThenElse(inside, next, hn::Mul(set(0.5f), hn::Add(low, high)));
+    h = hn::IfThenElse(found, h, moved);
   }
 }
 
-/// Where the far branch turns, by bisection in h.
+/// Where the far branch turns: the root of the slope of psi, by false position (the Illinois
+/// variant: Dowell and Jarratt 1971); h = 0 or 1 where it only rises or falls.
 HWY_INLINE V far_minimum(const Plane& plane) {
-  V low = set(0), high = set(1);
-  for (int step = 0; step < 22; ++step) {
-    const V h = hn::Mul(set(0.5f), hn::Add(low, high));
-    const M falls = hn::Lt(plane.slope(plane.at(twice_atan(h))), set(0));
-    low = hn::IfThenElse(falls, h, low);
-    high = hn::IfThenElse(falls, high, h);
+  // The slope times the three cosines, which has no poles.
+  const auto slope = [&](V h) {
+    const Angles a = plane.at(twice_atan(h));
+    return hn::NegMulAdd(
+        hn::Mul(plane.beta.k, a.t.c), a.i.c,
+        hn::Mul(a.beta.c, hn::MulSub(plane.t.k, a.i.c, hn::Mul(plane.i.k, a.t.c))));
+  };
+  V low = set(0), high = set(1), at_low = slope(low), at_high = slope(high);
+  const M falls = hn::Lt(at_low, set(0)), rises = hn::Gt(at_high, set(0));
+  for (int step = 0; step < 11; ++step) {
+    const V h = hn::NegMulAdd(at_high, hn::Div(hn::Sub(high, low), hn::Sub(at_high, at_low)), high);
+    const V at_h = slope(h);
+    const M crossed = hn::Lt(hn::Mul(at_h, at_high), set(0));
+    low = hn::IfThenElse(crossed, high, low);
+    at_low = hn::IfThenElse(crossed, at_high, hn::Mul(set(0.5f), at_low));
+    high = h;
+    at_high = at_h;
   }
-  return hn::Mul(set(0.5f), hn::Add(low, high));
+  return hn::IfThenElseZero(falls, hn::IfThenElse(rises, high, set(1)));
 }
 
 /// Whether the angle a, in (0, 3 pi / 2), is less than b, which is within pi of it.
@@ -242,69 +258,122 @@ void DrawExits(const ExitMedium& medium, ExitBatch& batch) {
   }
 }
 
-void FindExits(const ExitMedium& medium, ExitBranch branch, Division division, ExitBatch& batch) {
-  const V one = set(1), tiny = set(1e-6f);
-  const V n = set(medium.ior), sigma_s = set(medium.sigma_s), g = set(medium.g);
-  const bool far = branch != ExitBranch::near;
-  constexpr float quarter_inv_pi = 0.0795774715f;
-  for (std::size_t lane = 0; lane < batch.size; lane += hn::Lanes(D())) {
-    const V ux = load(batch.up_x, lane), uy = load(batch.up_y, lane), uz = load(batch.up_z, lane);
-    const V wx = load(batch.light_x, lane), wy = load(batch.light_y, lane),
-            wz = load(batch.light_z, lane);
-    const V depth2 = load(batch.depth2, lane), rho = hn::Sqrt(hn::Sub(one, depth2));
-    const Plane plane = plane_of(n, rho, far);
+/// A vertex and its light, in the plane of both.
+struct Wanted {
+  Plane plane;
+  V ux, uy, uz, rho, depth2;
+  Turn theta;    ///< the wanted angle; on far_round 2 pi less it
+  V sin_theta;   ///< of the angle itself
+  V ex, ey, ez;  ///< across, towards the light (on far_round away from it)
 
-    // The wanted angle, and the direction across in the plane.
+  /// `get` reads a lane of each of a batch's arrays.
+  template <class Get>
+  HWY_INLINE Wanted(V n, ExitBranch branch, const ExitBatch& batch, Get&& get)
+      : plane(
+            plane_of(n, hn::Sqrt(hn::Sub(set(1), get(batch.depth2))), branch != ExitBranch::near)),
+        ux(get(batch.up_x)),
+        uy(get(batch.up_y)),
+        uz(get(batch.up_z)),
+        depth2(get(batch.depth2)) {
+    rho = hn::Sqrt(hn::Sub(set(1), depth2));
+    const V wx = get(batch.light_x), wy = get(batch.light_y), wz = get(batch.light_z);
     const V cos_theta = hn::MulAdd(ux, wx, hn::MulAdd(uy, wy, hn::Mul(uz, wz)));
-    V ex = hn::NegMulAdd(cos_theta, ux, wx), ey = hn::NegMulAdd(cos_theta, uy, wy),
-      ez = hn::NegMulAdd(cos_theta, uz, wz);
-    const V sin_theta = hn::Sqrt(hn::MulAdd(ex, ex, hn::MulAdd(ey, ey, hn::Mul(ez, ez))));
-    V unit = hn::Div(one, hn::Max(sin_theta, tiny));
-    if (branch == ExitBranch::far_round) unit = hn::Neg(unit);
+    ex = hn::NegMulAdd(cos_theta, ux, wx);
+    ey = hn::NegMulAdd(cos_theta, uy, wy);
+    ez = hn::NegMulAdd(cos_theta, uz, wz);
+    sin_theta = hn::Sqrt(hn::MulAdd(ex, ex, hn::MulAdd(ey, ey, hn::Mul(ez, ez))));
+    V unit = hn::Div(set(1), hn::Max(sin_theta, set(tiny)));
+    theta = {cos_theta, sin_theta};
+    if (branch == ExitBranch::far_round) {
+      unit = hn::Neg(unit);
+      theta = -theta;
+    }
     ex = hn::Mul(ex, unit);
     ey = hn::Mul(ey, unit);
     ez = hn::Mul(ez, unit);
-    Turn theta{cos_theta, sin_theta};
-    if (branch == ExitBranch::far_round) theta = -theta;  // 2 pi - theta
+  }
 
-    const Turn end = plane.psi(plane.at({set(0), one}));
-    M reachable;
-    Root root;
-    if (!far) {
-      reachable = less(theta, end);
+  /// Whether there is a root on the branch; `turn`: far_minimum() of a far one.
+  HWY_INLINE M reachable(ExitBranch branch, V turn) const {
+    const Turn end = plane.psi(plane.at({set(0), set(1)}));
+    if (branch == ExitBranch::near) return less(theta, end);
+    const M beyond = less(plane.psi(plane.at(twice_atan(turn))), theta);
+    return branch == ExitBranch::far_falling ? hn::And(beyond, hn::Gt(turn, set(tiny)))
+                                             : hn::And(beyond, less(theta, end));
+  }
+
+  HWY_INLINE Root solve(ExitBranch branch, V turn) const {
+    const V zero = set(0), one = set(1), half = set(0.5f);
+    if (branch == ExitBranch::near) {
       // psi(x) >= x: from above, half the sine over one plus the cosine.
       const V guess =
-          hn::Min(hn::Div(sin_theta, hn::Max(hn::Add(one, cos_theta), tiny)), set(0.95f));
-      root = solve(plane, theta, set(0), one, guess, true, 7);
-    } else {
-      const V turn = far_minimum(plane);
-      const Turn least = plane.psi(plane.at(twice_atan(turn)));
-      if (branch == ExitBranch::far_falling) {
-        reachable = hn::And(less(least, theta), hn::Gt(turn, tiny));
-        root = solve(plane, theta, set(0), turn, hn::Mul(set(0.5f), turn), false, 16);
-      } else {
-        reachable = hn::And(less(theta, end), less(least, theta));
-        root = solve(plane, theta, turn, one, hn::Mul(set(0.5f), hn::Add(turn, one)), true, 16);
-      }
+          hn::Min(hn::Div(sin_theta, hn::Max(hn::Add(one, theta.c), set(tiny))), set(0.95f));
+      return HWY_NAMESPACE::solve(plane, theta, zero, one, guess, true, 7);
     }
-    const Angles a = plane.at(root.x);
+    if (branch == ExitBranch::far_falling)
+      return HWY_NAMESPACE::solve(plane, theta, zero, turn, hn::Mul(half, turn), false, 16);
+    return HWY_NAMESPACE::solve(plane, theta, turn, one, hn::Mul(half, hn::Add(turn, one)), true,
+                                16);
+  }
+};
+
+void FindMinima(const ExitMedium& medium, ExitBatch& batch) {
+  for (std::size_t lane = 0; lane < batch.size; lane += hn::Lanes(D())) {
+    const V rho = hn::Sqrt(hn::Sub(set(1), load(batch.depth2, lane)));
+    store(far_minimum(plane_of(set(medium.ior), rho, true)), batch.minimum, lane);
+  }
+}
+
+void FindExits(const ExitMedium& medium, ExitBranch branch, Division division, ExitBatch& batch) {
+  const V one = set(1), n = set(medium.ior), sigma_s = set(medium.sigma_s), g = set(medium.g);
+  const bool far = branch != ExitBranch::near;
+  const hn::RebindToSigned<D> di;
+  constexpr float quarter_inv_pi = 0.0795774715f;
+
+  // Few have a way out on a far branch: they are solved side by side.
+  std::array<std::int32_t, ExitBatch::capacity + hn::MaxLanes(D())> found;
+  std::size_t count = 0;
+  for (std::size_t lane = 0; lane < batch.size; lane += hn::Lanes(D())) {
+    const Wanted wanted(n, branch, batch,
+                        [&](const ExitBatch::Floats& from) { return load(from, lane); });
+    const M reachable = hn::And(wanted.reachable(branch, far ? load(batch.minimum, lane) : one),
+                                hn::FirstN(D(), batch.size - lane));
+    hn::StoreU(
+        hn::Compress(hn::Iota(di, static_cast<std::int32_t>(lane)), hn::RebindMask(di, reachable)),
+        di, &found[count]);
+    count += hn::CountTrue(D(), reachable);
+    store(set(0), batch.share, lane);
+  }
+  for (std::size_t i = count; i < count + hn::Lanes(D()); ++i)
+    found[i] = found[count > 0 ? count - 1 : 0];
+
+  for (std::size_t first = 0; first < count; first += hn::Lanes(D())) {
+    const auto index = hn::LoadU(di, &found[first]);
+    const auto get = [&](const ExitBatch::Floats& from) {
+      return hn::GatherIndex(D(), from.data(), index);
+    };
+    const auto put = [&](V value, ExitBatch::Floats& to) {
+      hn::ScatterIndex(value, D(), to.data(), index);
+    };
+    const Wanted w(n, branch, batch, get);
+    const Root root = w.solve(branch, far ? get(batch.minimum) : one);
+    const Angles a = w.plane.at(root.x);
+    const V rho = w.rho;
     const V cos_beta = far ? hn::Neg(a.beta.c) : a.beta.c, sin_beta = a.beta.s;
 
     // The Jacobian sin beta / (|sin psi| |psi'|), and the ray.
-    const V slope =
-        hn::Abs(hn::MulAdd(hn::Mul(rho, cos_beta),
-                           hn::Sub(hn::Div(n, hn::Max(a.t.c, tiny)), hn::Div(one, a.i.c)), one));
-    const V across = hn::IfThenElse(hn::Lt(sin_theta, set(1e-3f)), hn::Div(one, slope),
-                                    hn::Div(sin_beta, hn::Max(sin_theta, tiny)));
-    const V jacobian = hn::Div(across, hn::Max(slope, tiny));
+    const V slope = hn::Abs(
+        hn::MulAdd(hn::Mul(rho, cos_beta),
+                   hn::Sub(hn::Div(n, hn::Max(a.t.c, set(tiny))), hn::Div(one, a.i.c)), one));
+    const V across = hn::IfThenElse(hn::Lt(w.sin_theta, set(1e-3f)), hn::Div(one, slope),
+                                    hn::Div(sin_beta, hn::Max(w.sin_theta, set(tiny))));
+    const V jacobian = hn::Div(across, hn::Max(slope, set(tiny)));
     const V distance = far ? hn::NegMulAdd(rho, cos_beta, a.i.c)
-                           : hn::Div(depth2, hn::MulAdd(rho, cos_beta, a.i.c));
-    const V dx = hn::MulAdd(cos_beta, ux, hn::Mul(sin_beta, ex)),
-            dy = hn::MulAdd(cos_beta, uy, hn::Mul(sin_beta, ey)),
-            dz = hn::MulAdd(cos_beta, uz, hn::Mul(sin_beta, ez));
-    const V cosine =
-        hn::MulAdd(load(batch.in_x, lane), dx,
-                   hn::MulAdd(load(batch.in_y, lane), dy, hn::Mul(load(batch.in_z, lane), dz)));
+                           : hn::Div(w.depth2, hn::MulAdd(rho, cos_beta, a.i.c));
+    const V dx = hn::MulAdd(cos_beta, w.ux, hn::Mul(sin_beta, w.ex)),
+            dy = hn::MulAdd(cos_beta, w.uy, hn::Mul(sin_beta, w.ey)),
+            dz = hn::MulAdd(cos_beta, w.uz, hn::Mul(sin_beta, w.ez));
+    const V cosine = dot(get(batch.in_x), get(batch.in_y), get(batch.in_z), dx, dy, dz);
     const V q = hn::MulAdd(g, hn::Sub(g, hn::Add(cosine, cosine)), one);
     const V phase =
         hn::Div(hn::Mul(hn::NegMulAdd(g, g, one), set(quarter_inv_pi)), hn::Mul(q, hn::Sqrt(q)));
@@ -312,14 +381,13 @@ void FindExits(const ExitMedium& medium, ExitBranch branch, Division division, E
         hn::Mul(hn::Mul(phase, jacobian), hn::Exp(D(), hn::Neg(hn::Mul(sigma_s, distance))));
     const V by_walk = division == Division::balanced ? pdf : set(0);
     const V share = hn::Div(hn::Mul(transmittance(n, a.i.c, a.t.c), pdf),
-                            hn::Add(by_walk, load(batch.light_pdf, lane)));
-    store(hn::IfThenElseZero(reachable, hn::IfThenElse(root.found, share, set(-1))), batch.share,
-          lane);
-    store(distance, batch.distance, lane);
+                            hn::Add(by_walk, get(batch.light_pdf)));
+    put(hn::IfThenElse(root.found, share, set(-1)), batch.share);
+    put(distance, batch.distance);
     // Where it leaves: p + distance d.
-    store(hn::MulAdd(distance, dx, hn::Mul(rho, ux)), batch.normal_x, lane);
-    store(hn::MulAdd(distance, dy, hn::Mul(rho, uy)), batch.normal_y, lane);
-    store(hn::MulAdd(distance, dz, hn::Mul(rho, uz)), batch.normal_z, lane);
+    put(hn::MulAdd(distance, dx, hn::Mul(rho, w.ux)), batch.normal_x);
+    put(hn::MulAdd(distance, dy, hn::Mul(rho, w.uy)), batch.normal_y);
+    put(hn::MulAdd(distance, dz, hn::Mul(rho, w.uz)), batch.normal_z);
   }
 }
 
@@ -330,6 +398,7 @@ HWY_AFTER_NAMESPACE();
 namespace translucube {
 
 HWY_EXPORT(ChooseLights);
+HWY_EXPORT(FindMinima);
 HWY_EXPORT(FindExits);
 HWY_EXPORT(DrawExits);
 
@@ -361,6 +430,10 @@ double share(const Medium& medium, double ior, const SphereExit& exit, Vec3 befo
 void choose_lights(const ExitMedium& medium, const LightStrata& lights, std::size_t position,
                    ExitBatch& batch) {
   HWY_DYNAMIC_DISPATCH(ChooseLights)(medium, lights, position, batch);
+}
+
+void find_minima(const ExitMedium& medium, ExitBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(FindMinima)(medium, batch);
 }
 
 void find_exits(const ExitMedium& medium, ExitBranch branch, Division division, ExitBatch& batch) {

@@ -36,7 +36,9 @@ struct LightStrata {
 /// Scattering vertices, each with a direction towards the light (structure of arrays).
 struct ExitBatch {
   static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
-  using Floats = std::array<float, capacity>;
+  /// So that equal places of two arrays do not fall into the same set of a cache.
+  static constexpr std::size_t padding = 16;
+  using Floats = std::array<float, capacity + padding>;
 
   std::size_t size = 0;
   // In: outward radius (unit), 1 - rho^2, direction of travel before the vertex (unit), direction
@@ -47,6 +49,7 @@ struct ExitBatch {
   // numbers uniform in [0, 1]. Out: which light was chosen.
   Floats axis_x{}, axis_y{}, axis_z{}, choice{}, turn{}, drawn{};
   std::array<std::int32_t, capacity> light{};
+  Floats minimum;  ///< of find_minima(): where the far branches turn
   // Out: share of the vertex's light that leaves towards the light, over the light's density (0:
   // there is no way; negative: not found, sphere_exit.h finds it); length inside; where it leaves
   // (the normal).
@@ -55,14 +58,23 @@ struct ExitBatch {
   // drawn for all, length inside, cosine between up and the normal where it leaves.
   Floats drawn_share, drawn_distance, drawn_cosine;
 
-  /// `rho`: length of p, > 0. Room for one more is the caller's care.
-  void push(Vec3 p, double rho, Vec3 in, Vec3 towards, double pdf) {
+  Vec3 vertex(std::size_t i) const {
+    return std::sqrt(1.0 - depth2[i]) * Vec3{up_x[i], up_y[i], up_z[i]};
+  }
+  Vec3 in(std::size_t i) const { return {in_x[i], in_y[i], in_z[i]}; }
+  /// The ways out from a vertex, one by one.
+  SphereExits exits(std::size_t i, double ior) const {
+    return SphereExits(ior, {up_x[i], up_y[i], up_z[i]}, depth2[i]);
+  }
+
+  /// `depth_squared`: 1 - |p|^2. Room for one more is the caller's care.
+  void push(Vec3 p, double depth_squared, Vec3 in, Vec3 towards, double pdf) {
     const std::size_t i = size++;
-    const double scale = 1 / rho;
+    const double scale = 1 / std::fmax(length(p), 1e-12);
     up_x[i] = static_cast<float>(p.x * scale);
     up_y[i] = static_cast<float>(p.y * scale);
     up_z[i] = static_cast<float>(p.z * scale);
-    depth2[i] = static_cast<float>((1 - rho) * (1 + rho));
+    depth2[i] = static_cast<float>(depth_squared);
     in_x[i] = static_cast<float>(in.x);
     in_y[i] = static_cast<float>(in.y);
     in_z[i] = static_cast<float>(in.z);
@@ -89,6 +101,9 @@ double share(const Medium& medium, double ior, const SphereExit& exit, Vec3 befo
 /// from a start drawn by `turn`. Multiplies light_pdf by the density of the choice.
 void choose_lights(const ExitMedium& medium, const LightStrata& lights, std::size_t position,
                    ExitBatch& batch);
+
+/// Fills `minimum`, which the far branches ask for.
+void find_minima(const ExitMedium& medium, ExitBatch& batch);
 
 /// Fills the batch's results for the way out on one branch.
 void find_exits(const ExitMedium& medium, ExitBranch branch, Division division, ExitBatch& batch);

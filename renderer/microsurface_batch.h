@@ -24,10 +24,12 @@ struct BatchInterface {
 class MicrosurfaceBatch {
  public:
   static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
+  /// So that equal places of two arrays do not fall into the same set of a cache.
+  static constexpr std::size_t padding = 16;
   /// Lights that a collision looks for.
   static constexpr std::size_t most_lights = 16;
-  using Floats = std::array<float, capacity>;
-  using Integers = std::array<std::uint32_t, capacity>;
+  using Floats = std::array<float, capacity + padding>;
+  using Integers = std::array<std::uint32_t, capacity + padding>;
 
   /// Rays on their way from microfacet to microfacet (structure of arrays).
   struct Walking {

@@ -15,8 +15,14 @@ struct Path : Particle {
   double pdf = 0;
   /// In place of pdf: the light there is found by looking for it alone.
   static constexpr double found_by_connecting = -1;
-  Vec3 vertex;       ///< where it was scattered last,
-  double phase = 0;  ///< the density of d there if light was looked for from there; 0: it was not
+  /// In a sphere, where the last flight began, if light was looked for from there.
+  struct Vertex {
+    Vec3 p;
+    double depth2 = 0;  ///< 1 - |p|^2
+    double flight = 0;  ///< length from there to the boundary
+    double phase = 0;   ///< the density of d; 0: no light was looked for
+  } vertex;
+  bool colliding = false;  ///< where it is; else a flight comes next
   std::uint32_t pixel = 0, events = 0;
   std::uint32_t walk = 0;  ///< which walk of the connector's
   /// Of the dipole model: colour so far, times back at the body from outside.

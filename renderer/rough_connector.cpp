@@ -1,5 +1,7 @@
 #include "renderer/rough_connector.h"
 
+#include <bit>
+
 namespace translucube {
 
 RoughConnector::RoughConnector(const Scene& scene, Collector& collector, const LightList& lights)
@@ -11,17 +13,22 @@ RoughConnector::RoughConnector(const Scene& scene, Collector& collector, const L
            static_cast<float>(medium_.sigma_s), static_cast<float>(medium_.g)};
 }
 
-double RoughConnector::chance(Vec3 p) const {
-  return std::exp(-falling * 0.5 * medium_.sigma_s * (1 - length_squared(p)));
+WalkMedium RoughConnector::walk_medium() const {
+  WalkMedium walk{static_cast<float>(medium_.sigma_s), static_cast<float>(medium_.g)};
+  if (active()) {
+    walk.margin = margin;
+    walk.falling = falling;
+  }
+  return walk;
 }
 
-void RoughConnector::place(RoughExitBatch& batch, Vec3 p, Vec3 d, Vec3 light) const {
+void RoughConnector::place(RoughExitBatch& batch, Vec3 p, double depth2, Vec3 d, Vec3 light) {
   const std::size_t i = batch.size++;
-  const double rho = std::fmax(length(p), 1e-12), scale = 1 / rho;
+  const double scale = 1 / std::fmax(length(p), 1e-12);
   batch.up_x[i] = static_cast<float>(p.x * scale);
   batch.up_y[i] = static_cast<float>(p.y * scale);
   batch.up_z[i] = static_cast<float>(p.z * scale);
-  batch.depth2[i] = static_cast<float>((1 - rho) * (1 + rho));
+  batch.depth2[i] = static_cast<float>(depth2);
   batch.light_x[i] = static_cast<float>(light.x);
   batch.light_y[i] = static_cast<float>(light.y);
   batch.light_z[i] = static_cast<float>(light.z);
@@ -30,21 +37,24 @@ void RoughConnector::place(RoughExitBatch& batch, Vec3 p, Vec3 d, Vec3 light) co
   batch.d_z[i] = static_cast<float>(d.z);
 }
 
-void RoughConnector::connect(Path& path) {
-  const double chance = this->chance(path.p);
-  Rng& rng = path.sampler.rng();
-  if (rng.uniform() >= chance) return;
-  ++collector_.counters().connections;
-  collector_.note("connect", path);
-  const auto light = static_cast<std::uint32_t>(rng.bits() & (LightList::size - 1));
-  const std::size_t i = connections_.size;
-  place(connections_, path.p, path.d, {lights_.x[light], lights_.y[light], lights_.z[light]});
-  connections_.light_pdf[i] = static_cast<float>(chance * lights_.pdf[light]);
-  const std::uint64_t key = rng.bits();
-  connections_.key_low[i] = static_cast<std::uint32_t>(key);
-  connections_.key_high[i] = static_cast<std::uint32_t>(key >> 32);
-  waiting_[i] = {path.length, static_cast<float>(path.weight), path.pixel, light};
-  if (connections_.size == RoughExitBatch::capacity) flush();
+void RoughConnector::connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths) {
+  collector_.counters().connections += vertices.size;
+  for (std::size_t v = 0; v < vertices.size; ++v) {
+    const Path& path = paths[vertices.slot[v]];
+    const Vec3 p{vertices.p_x[v], vertices.p_y[v], vertices.p_z[v]},
+        d{vertices.d_x[v], vertices.d_y[v], vertices.d_z[v]};
+    const double length = path.length + vertices.length[v];
+    const std::uint32_t light = vertices.bits[v] & (LightList::size - 1);
+    collector_.note("connect", p, d, length, path.weight);
+    const std::size_t i = connections_.size;
+    place(connections_, p, vertices.depth2[v], d,
+          {lights_.x[light], lights_.y[light], lights_.z[light]});
+    connections_.light_pdf[i] = vertices.chance[v] * lights_.pdf[light];
+    connections_.key_low[i] = std::bit_cast<std::uint32_t>(vertices.u[v]) ^ vertices.bits[v];
+    connections_.key_high[i] = std::bit_cast<std::uint32_t>(vertices.v[v]);
+    waiting_[i] = {length, static_cast<float>(path.weight), path.pixel, light};
+    if (connections_.size == RoughExitBatch::capacity) flush();
+  }
 }
 
 void RoughConnector::flush() {
@@ -59,11 +69,10 @@ void RoughConnector::flush() {
 }
 
 void RoughConnector::push_way(const Path& path, Vec3 light, double pdf) {
-  const Vec3 way = path.p - path.vertex;
-  const double distance = length(way);
-  walked_[ways_.size] = static_cast<float>(path.phase * std::exp(-medium_.sigma_s * distance) *
-                                           pdf / chance(path.vertex));
-  place(ways_, path.vertex, path.d, light);
+  const Path::Vertex& from = path.vertex;
+  walked_[ways_.size] = static_cast<float>(from.phase * std::exp(-medium_.sigma_s * from.flight) *
+                                           pdf / walk_medium().chance(from.depth2));
+  place(ways_, from.p, from.depth2, path.d, light);
 }
 
 const RoughWays::Floats& RoughConnector::weigh_ways() {

@@ -6,10 +6,12 @@
 // itself. What collides more often on its way out looks for light at the collisions.
 
 #include <array>
+#include <span>
 
 #include "renderer/collector.h"
 #include "renderer/light_list.h"
 #include "renderer/rough_exit_batch.h"
+#include "renderer/sphere_walk.h"
 
 namespace translucube {
 
@@ -19,26 +21,28 @@ class RoughConnector {
   RoughConnector(const Scene& scene, Collector& collector, const LightList& lights);
 
   bool active() const { return !lights_.empty(); }
-  /// Mean free paths below the surface where vertices are visited one by one: little light goes
-  /// straight out from deeper ones.
-  double margin() const { return active() ? 3 : 0; }
+  /// The body, and which of its collisions look for light.
+  WalkMedium walk_medium() const;
 
   void start(Path&) {}
-  /// From path.p, where it comes along path.d; before its new direction is chosen.
-  void connect(Path& path);
+  /// From collisions of walks; a vertex's slot is the index of its path.
+  void connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths);
   /// Collects what is under way.
   void flush();
 
-  /// A path straight from path.vertex to path.p, where it leaves towards `light` with a density
-  /// `pdf` by its first collision.
+  /// A path straight from path.vertex to the boundary, where it leaves towards `light` with a
+  /// density `pdf` by its first collision.
   void push_way(const Path& path, Vec3 light, double pdf);
   /// For the ways pushed, in their order: the density with which they go on towards the light over
   /// the chance that connect() looked there; 0: it never does. Forgets them.
   const RoughWays::Floats& weigh_ways();
 
  private:
+  /// Mean free paths below the surface where vertices are visited one by one: little light goes
+  /// straight out from deeper ones.
+  static constexpr float margin = 3;
   /// Fall of the chance to connect with the optical depth.
-  static constexpr double falling = 0.5;
+  static constexpr float falling = 0.5f;
 
   struct Waiting {
     double length;
@@ -46,8 +50,7 @@ class RoughConnector {
     std::uint32_t pixel, light;
   };
 
-  double chance(Vec3 p) const;
-  void place(RoughExitBatch& batch, Vec3 p, Vec3 d, Vec3 light) const;
+  static void place(RoughExitBatch& batch, Vec3 p, double depth2, Vec3 d, Vec3 light);
 
   Collector& collector_;
   const LightList& lights_;

@@ -21,7 +21,9 @@ struct RoughExitMedium {
 /// Scattering vertices, each with a direction towards a light (structure of arrays).
 struct RoughExitBatch {
   static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
-  using Floats = std::array<float, capacity>;
+  /// So that equal places of two arrays do not fall into the same set of a cache.
+  static constexpr std::size_t padding = 16;
+  using Floats = std::array<float, capacity + padding>;
 
   std::size_t size = 0;
   // Where from: outward radius (unit), 1 - rho^2. Where to: the light (unit).

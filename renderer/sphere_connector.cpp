@@ -44,66 +44,70 @@ void SphereConnector::start(Path& path) {
   for (Rgb& order : walks_.back().expected) order = order * std::numbers::inv_pi_v<float>;
 }
 
-double SphereConnector::chance(Vec3 p) const {
-  const double depth = 0.5 * medium_.sigma_s * (1 - length_squared(p));
-  return std::exp(-falling * depth);
+WalkMedium SphereConnector::walk_medium() const {
+  WalkMedium walk{static_cast<float>(medium_.sigma_s), static_cast<float>(medium_.g)};
+  if (active()) {
+    walk.margin = margin;
+    walk.falling = falling;
+  }
+  return walk;
 }
 
 bool SphereConnector::reaches_far(const SphereExits& exits) const {
   return medium_.sigma_s * exits.shortest_far() < longest_way;
 }
 
-void SphereConnector::connect(Path& path) {
-  const double chance = this->chance(path.p);
-  Rng& rng = path.sampler.rng();
-  if (rng.uniform() >= chance) return;
-  ++collector_.counters().connections;
-  collector_.note("connect", path);
-  Waiting vertex{path.p,    path.d, path.length, static_cast<float>(path.weight), path.pixel,
-                 path.walk, 0};
-  const SphereExits exits(ior_, path.p);
-  const double rho = std::fmax(exits.rho(), 1e-12);
-  if (near_alone()) {
-    ExitBatch& batch = near_.batch;
-    const std::size_t i = batch.size;
-    const Vec3 axis = walks_[path.walk].axis;
-    const Sample2 u = rng.uniform2();
-    batch.axis_x[i] = static_cast<float>(axis.x);
-    batch.axis_y[i] = static_cast<float>(axis.y);
-    batch.axis_z[i] = static_cast<float>(axis.z);
-    batch.choice[i] = static_cast<float>(u.u);
-    batch.drawn[i] = static_cast<float>(u.v);
-    batch.turn[i] = static_cast<float>(rng.uniform());
-    near_.waiting[i] = vertex;
-    near_.waiting[i].weight = static_cast<float>(path.weight / chance);
-    batch.push(path.p, rho, path.d, {}, 1);
-    if (batch.size == ExitBatch::capacity) flush_near();
-    if (!reaches_far(exits)) return;
+void SphereConnector::connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths) {
+  collector_.counters().connections += vertices.size;
+  // The far side begins this far from everywhere.
+  const bool far = medium_.sigma_s * SphereExits(ior_, {0, 0, 1}, 0).shortest_far() < longest_way;
+  for (std::size_t i = 0; i < vertices.size; ++i) {
+    const Path& path = paths[vertices.slot[i]];
+    const auto weight = static_cast<float>(path.weight);
+    const float chance = vertices.chance[i];
+    const std::uint32_t drawn = vertices.bits[i] & std::uint32_t{LightStrata::size - 1};
+    const EnvironmentSample& light = lights_[drawn];
+    const Vec3 p{vertices.p_x[i], vertices.p_y[i], vertices.p_z[i]};
+    collector_.note("connect", p, {vertices.d_x[i], vertices.d_y[i], vertices.d_z[i]},
+                    path.length + vertices.length[i], path.weight);
+    ExitBatch& near = near_.batch;
+    if (near_alone()) {
+      const Vec3 axis = walks_[path.walk].axis;
+      near.axis_x[near.size] = static_cast<float>(axis.x);
+      near.axis_y[near.size] = static_cast<float>(axis.y);
+      near.axis_z[near.size] = static_cast<float>(axis.z);
+      near.choice[near.size] = vertices.u[i];
+      near.drawn[near.size] = vertices.v[i];
+      near.turn[near.size] = vertices.w[i];
+      push(near_, vertices, i, path, weight / chance, 0, {}, 1);
+    } else {
+      push(near_, vertices, i, path, weight, drawn, light.direction, chance * light.value.pdf);
+    }
+    if (near.size == ExitBatch::capacity) flush_near();
+    if (!far || !reaches_far(SphereExits(ior_, p, vertices.depth2[i]))) continue;
+    push(far_, vertices, i, path, weight, drawn, light.direction, chance * light.value.pdf);
+    if (far_.batch.size == ExitBatch::capacity) flush_far();
   }
-  vertex.light = static_cast<std::uint32_t>(rng.bits() & (LightStrata::size - 1));
-  const double pdf = chance * lights_[vertex.light].value.pdf;
-  if (!near_alone()) {
-    push(near_, vertex, rho, pdf);
-    if (near_.batch.size == ExitBatch::capacity) flush_near();
-  }
-  if (!reaches_far(exits)) return;
-  push(far_, vertex, rho, pdf);
-  if (far_.batch.size == ExitBatch::capacity) flush_far();
 }
 
-void SphereConnector::push(Queue& queue, const Waiting& vertex, double rho, double pdf) const {
-  queue.waiting[queue.batch.size] = vertex;
-  queue.batch.push(vertex.p, rho, vertex.d, lights_[vertex.light].direction, pdf);
+void SphereConnector::push(Queue& queue, const SphereWalk::Vertices& vertices, std::size_t i,
+                           const Path& path, float weight, std::uint32_t light, Vec3 direction,
+                           double pdf) {
+  queue.waiting[queue.batch.size] = {path.length + vertices.length[i], weight, path.pixel,
+                                     path.walk, light};
+  queue.batch.push({vertices.p_x[i], vertices.p_y[i], vertices.p_z[i]}, vertices.depth2[i],
+                   {vertices.d_x[i], vertices.d_y[i], vertices.d_z[i]}, direction, pdf);
 }
 
 double SphereConnector::pdf(const Path& path) const {
-  if (path.phase == 0) return 0;
-  const SphereExits exits(ior_, path.vertex);
+  const Path::Vertex& from = path.vertex;
+  if (from.phase == 0) return 0;
+  const SphereExits exits(ior_, from.p, from.depth2);
   const bool far = exits.is_far(path.d);
   if (far && !reaches_far(exits)) return 0;
   if (!far && near_alone()) return Path::found_by_connecting;
-  return path.phase * std::exp(-medium_.sigma_s * length(path.p - path.vertex)) *
-         exits.jacobian(path.d) / chance(path.vertex);
+  return from.phase * std::exp(-medium_.sigma_s * from.flight) * exits.jacobian(path.d) /
+         walk_medium().chance(from.depth2);
 }
 
 void SphereConnector::flush_near() {
@@ -115,6 +119,7 @@ void SphereConnector::flush_near() {
 }
 
 void SphereConnector::flush_far() {
+  find_minima(exit_medium(), far_.batch);
   for (const ExitBranch branch : far_branches) collect_balanced(far_, branch);
   far_.batch.size = 0;
 }
@@ -129,12 +134,12 @@ void SphereConnector::collect_balanced(Queue& queue, ExitBranch branch) {
     Vec3 normal{batch.normal_x[i], batch.normal_y[i], batch.normal_z[i]};
     if (share == 0) continue;
     if (!(share > 0)) {  // not found, or not finite: sought in double precision
-      const auto exit = SphereExits(ior_, from.p).towards(light.direction, branch);
+      const auto exit = batch.exits(i, ior_).towards(light.direction, branch);
       if (!exit) continue;
-      share =
-          translucube::share(medium_, ior_, *exit, from.d, batch.light_pdf[i], Division::balanced);
+      share = translucube::share(medium_, ior_, *exit, batch.in(i), batch.light_pdf[i],
+                                 Division::balanced);
       distance = exit->distance;
-      normal = from.p + distance * exit->d;
+      normal = batch.vertex(i) + distance * exit->d;
     }
     const Rgb brought = light.value.radiance - expected(normal, from.walk) * far_share;
     collector_.collect(from.pixel, from.length + distance, 0,
@@ -163,10 +168,10 @@ void SphereConnector::collect_near(Queue& queue) {
     if (share == 0) continue;
     if (!(share > 0)) {  // not found, or not finite: sought in double precision
       const Vec3 w{batch.light_x[i], batch.light_y[i], batch.light_z[i]};
-      const auto exit = SphereExits(ior_, from.p).towards(w, ExitBranch::near);
+      const auto exit = batch.exits(i, ior_).towards(w, ExitBranch::near);
       if (!exit) continue;
-      share =
-          translucube::share(medium_, ior_, *exit, from.d, batch.light_pdf[i], Division::connected);
+      share = translucube::share(medium_, ior_, *exit, batch.in(i), batch.light_pdf[i],
+                                 Division::connected);
       distance = exit->distance;
     }
     collector_.collect(

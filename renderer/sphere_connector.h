@@ -15,11 +15,13 @@
 // from are seen from sixteen of them.
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "renderer/collector.h"
 #include "renderer/exit_batch.h"
 #include "renderer/sphere_exit.h"
+#include "renderer/sphere_walk.h"
 
 namespace translucube {
 
@@ -27,9 +29,7 @@ namespace translucube {
 struct NoConnector {
   NoConnector(const Scene&, Collector&, std::uint64_t) {}
   static constexpr bool active() { return false; }
-  static constexpr double margin() { return 0; }
   void start(Path&) {}
-  void connect(Path&) {}
   double pdf(const Path&) const { return 0; }
   void flush() {}
 };
@@ -41,16 +41,14 @@ class SphereConnector {
 
   /// Whether there is anything to look for: light that differs between directions.
   bool active() const { return environment_ != nullptr; }
-  /// Mean free paths below the surface where vertices are visited one by one: light that goes
-  /// straight out from deeper ones is left to the walk, which meets the sun at random (at 3 the
-  /// untrimmed relMSE of S100 is five times as large).
-  double margin() const { return active() ? 4 : 0; }
+  /// The body, and which of its collisions look for light.
+  WalkMedium walk_medium() const;
 
   /// Before the first connection of a path: its walk starts at path.p.
   void start(Path& path);
-  /// From path.p, where it comes along path.d; before its new direction is chosen.
-  void connect(Path& path);
-  /// Of a path that arrived at path.p straight from path.vertex: the density of the direction in
+  /// From collisions of walks; a vertex's slot is the index of its path.
+  void connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths);
+  /// Of a path that arrived straight from path.vertex: the density of the direction in
   /// which it goes on outside, over the chance that connect() looked there; 0: it never does.
   double pdf(const Path& path) const;
   /// Collects what is under way.
@@ -70,10 +68,14 @@ class SphereConnector {
   }
 
  private:
+  /// Mean free paths below the surface where vertices are visited one by one: light that goes
+  /// straight out from deeper ones is left to the walk, which meets the sun at random (at 3 the
+  /// untrimmed relMSE of S100 is five times as large).
+  static constexpr float margin = 4;
+  /// Fall of the chance to connect with the optical depth.
+  static constexpr float falling = 0.5f;
   /// Beyond this optical distance the far side of the body is left to the walk.
   static constexpr double longest_way = 4;
-  /// Fall of the chance to connect with the optical depth.
-  static constexpr double falling = 0.5;
 
   /// By symmetry the whole of an isotropic walk may be turned about the radius of its first vertex.
   struct Walk {
@@ -82,7 +84,6 @@ class SphereConnector {
   };
   /// What a connection needs to be collected.
   struct Waiting {
-    Vec3 p, d;
     double length;
     float weight;
     std::uint32_t pixel, walk, light;
@@ -97,7 +98,6 @@ class SphereConnector {
   /// more of the light. Each lane has its own; which paths are traced does not depend on it.
   float carried_share(const Lane& lane) const;
   static float legendre2(float c) { return 1.5f * c * c - 0.5f; }
-  double chance(Vec3 p) const;
   bool reaches_far(const SphereExits& exits) const;
   ExitMedium exit_medium() const {
     return {static_cast<float>(ior_), static_cast<float>(medium_.sigma_s),
@@ -105,7 +105,10 @@ class SphereConnector {
   }
   /// Whether all that leaves on the near branch is found by connecting.
   bool near_alone() const { return medium_.g == 0; }
-  void push(Queue& queue, const Waiting& vertex, double rho, double pdf) const;
+  /// A vertex and what it takes to collect it; `light`: of the list, `pdf`: with which it is looked
+  /// for, per solid angle.
+  static void push(Queue& queue, const SphereWalk::Vertices& vertices, std::size_t i,
+                   const Path& path, float weight, std::uint32_t light, Vec3 direction, double pdf);
   void flush_near();
   void flush_far();
   void collect_balanced(Queue& queue, ExitBranch branch);

@@ -36,8 +36,9 @@ struct SphereExit {
 /// The ways out from one point.
 class SphereExits {
  public:
-  /// `ior` >= 1; p inside the unit sphere.
-  SphereExits(double ior, Vec3 p);
+  /// `ior` >= 1; p inside the unit sphere, depth2 = 1 - |p|^2.
+  SphereExits(double ior, Vec3 p, double depth2);
+  SphereExits(double ior, Vec3 p) : SphereExits(ior, p, 1 - length_squared(p)) {}
 
   /// The way out towards w (unit) on a branch, if there is one.
   std::optional<SphereExit> towards(Vec3 w, ExitBranch branch) const;
@@ -98,13 +99,15 @@ class SphereExits {
   SphereExit exit_at(double x, bool far, Vec3 across) const;
 
   static constexpr double x_max = std::numbers::pi / 2;
-  double ior_, rho_;
+  double ior_, rho_, depth2_;
   bool by_t_;
   Vec3 up_;
 };
 
-inline SphereExits::SphereExits(double ior, Vec3 p) : ior_(ior), rho_(length(p)) {
-  up_ = rho_ > 1e-12 ? p * (1 / rho_) : Vec3{0, 0, 1};
+inline SphereExits::SphereExits(double ior, Vec3 p, double depth2)
+    : ior_(ior), rho_(std::sqrt(std::fmax(0.0, 1 - depth2))), depth2_(depth2) {
+  const double norm = length(p);
+  up_ = norm > 1e-12 ? p * (1 / norm) : Vec3{0, 0, 1};
   by_t_ = ior_ * rho_ > 1;
 }
 
@@ -167,8 +170,7 @@ inline SphereExit SphereExits::exit_at(double x, bool far, Vec3 across) const {
   SphereExit exit;
   exit.d = cos_beta * up_ + std::sin(a.beta) * across;
   exit.cos_i = std::cos(a.i);
-  exit.distance =
-      far ? exit.cos_i - rho_ * cos_beta : (1 - rho_) * (1 + rho_) / (exit.cos_i + rho_ * cos_beta);
+  exit.distance = far ? exit.cos_i - rho_ * cos_beta : depth2_ / (exit.cos_i + rho_ * cos_beta);
   exit.jacobian = jacobian(exit.d);
   return exit;
 }

@@ -11,9 +11,12 @@
 // Paths of small weight are played out by Russian roulette, so that the branches in flight stay
 // bounded.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <type_traits>
+#include <variant>
 
 #include "renderer/collector.h"
 #include "renderer/environment_batch.h"
@@ -21,6 +24,7 @@
 #include "renderer/path.h"
 #include "renderer/rough_connector.h"
 #include "renderer/sphere_connector.h"
+#include "renderer/sphere_walk.h"
 #include "renderer/trace_body.h"
 
 namespace translucube {
@@ -51,7 +55,8 @@ class Tracer {
   static constexpr bool lambertian = std::is_same_v<Interior, LambertianInterior>;
   static constexpr bool dense = std::is_same_v<Interior, DensePigmentInterior>;
   static constexpr bool dipole = std::is_same_v<Interior, DipoleInterior>;
-  /// Whether scattering vertices may look for light through the boundary.
+  /// Whether walks go on together in SIMD, and their vertices may look for light through the
+  /// boundary.
   static constexpr bool connecting = scattering && std::is_same_v<Shape, Sphere>;
   using Connector = std::conditional_t<!connecting, NoConnector,
                                        std::conditional_t<smooth, SphereConnector, RoughConnector>>;
@@ -150,7 +155,9 @@ class Tracer {
 
   /// Flights inside until the boundary.
   void walk() {
-    if constexpr (open) {
+    if constexpr (connecting) {
+      walk_together();
+    } else if constexpr (open) {
       for (Path& path : walking_) {
         Hit hit;
         if (!cross_body(path, hit)) {
@@ -164,11 +171,51 @@ class Tracer {
     walking_.clear();
   }
 
+  void walk_together() {
+    const WalkMedium medium = connector_.walk_medium();
+    for (std::size_t first = 0; first < walking_.size(); first += SphereWalk::capacity) {
+      const std::span<Path> paths(&walking_[first],
+                                  std::min(SphereWalk::capacity, walking_.size() - first));
+      for (std::size_t i = 0; i < paths.size(); ++i) {
+        Path& path = paths[i];
+        sphere_walk_.push(static_cast<std::uint32_t>(i), path.p, depth2(path), path.d,
+                          path.colliding, path.sampler.rng().bits());
+      }
+      while (sphere_walk_.under_way() > 0) {
+        tile_.counters.flights += sphere_walk_.under_way();
+        sphere_walk_.advance(medium);
+        connector_.connect(sphere_walk_.vertices(), paths);
+        arrive(sphere_walk_.arrivals(), paths);
+      }
+    }
+  }
+
+  /// 1 - |p|^2 of a walk's start.
+  static double depth2(const Path& path) {
+    return path.p == path.n ? 0 : std::fmax(0.0, 1 - length_squared(path.p));
+  }
+
+  void arrive(const SphereWalk::Arrivals& arrivals, std::span<const Path> paths) {
+    for (std::size_t i = 0; i < arrivals.size; ++i) {
+      Path& path = leaving_.emplace_back(paths[arrivals.slot[i]]);
+      path.p = path.n = {arrivals.n_x[i], arrivals.n_y[i], arrivals.n_z[i]};
+      path.d = {arrivals.d_x[i], arrivals.d_y[i], arrivals.d_z[i]};
+      path.length += arrivals.length[i];
+      path.vertex = {{arrivals.from_x[i], arrivals.from_y[i], arrivals.from_z[i]},
+                     arrivals.from_depth2[i],
+                     arrivals.flight[i],
+                     arrivals.phase[i]};
+      path.colliding = false;
+      collector_.note("boundary", path);
+    }
+  }
+
   /// To the boundary; false for a path that lost its way.
   bool cross_body(Path& path, Hit& hit) {
     if constexpr (scattering) {
-      return walk_to_boundary(shape_, interior_.medium, path, path.sampler.rng(), hit,
-                              [&](auto&& place) { scatter_at(place, path); });
+      return walk_to_boundary(
+          shape_, interior_.medium, path, path.sampler.rng(), hit,
+          [&](auto&& place) { scatter(place, interior_.medium, path, path.sampler.rng()); });
     } else if constexpr (dense) {
       // In the half space below the point where it entered, to leave at that very point.
       const Frame frame(path.n);
@@ -200,24 +247,12 @@ class Tracer {
     return true;
   }
 
-  /// A collision, which looks for light where that may be found.
-  template <class Place>
-  void scatter_at(Place&& place, Path& path) {
-    const Medium& medium = interior_.medium;
-    Rng& rng = path.sampler.rng();
-    if constexpr (connecting) {
-      path.phase = 0;
-      if (large_step(place, medium, path, rng, connector_.margin())) return;
-      const Vec3 before = path.d;
-      if (connector_.active()) connector_.connect(path);
-      path.d = medium.scatter(before, rng);
-      if (connector_.active()) {
-        path.vertex = path.p;
-        path.phase = medium.phase(dot(before, path.d));
-      }
-    } else {
-      scatter(place, medium, path, rng);
-    }
+  /// At a collision.
+  void collide(Path& path) {
+    if constexpr (connecting)
+      path.colliding = true;
+    else
+      scatter(shape_, interior_.medium, path, path.sampler.rng());
   }
 
   /// Paths inside at the boundary: what leaves is collected with its weight, what stays walks on.
@@ -427,6 +462,7 @@ class Tracer {
   LightList lights_;    ///< of the rough interface
   bool may_come_back_;  ///< whether what leaves may arrive again
   Connector connector_;
+  std::conditional_t<connecting, SphereWalk, std::monostate> sphere_walk_;
   /// What was never inside waits apart from the rest: sums of floats depend on their order, and a
   /// black body traced alone must have the bits of a black lane.
   std::array<Escapes, 2> escapes_;

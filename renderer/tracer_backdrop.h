@@ -20,7 +20,7 @@ void Tracer<Shape, Interface, Interior>::meet_backdrop(const Path& path) {
   reflected.p = p;
   reflected.n = {0, 0, 1};
   reflected.weight *= value;
-  reflected.pdf = reflected.phase = 0;
+  reflected.pdf = reflected.vertex.phase = 0;
   if (reflected.weight > 0) leave_print(reflected);
 }
 

@@ -22,7 +22,7 @@ void Tracer<Shape, Interface, Interior>::await_crossing(const Path& path, bool f
   crossing_.push_back(path);
   PathSampler& sampler = crossing_.back().sampler;
   microsurface_.push(from_outside ? path.n : -path.n, path.d, sampler.next2(), sampler.rng().bits(),
-                     connecting && !from_outside && path.phase > 0);
+                     connecting && !from_outside && path.vertex.phase > 0);
   if (crossing_.size() == MicrosurfaceBatch::capacity) cross_rough(from_outside);
 }
 
@@ -57,7 +57,6 @@ void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
       path.weight *= microsurface_.inward_weight(i);
       if (path.weight <= 0) continue;
       path.pdf = 0;
-      path.phase = 0;
       path.d = microsurface_.inward(i);
       if (!from_outside) {
         if (path.survives()) walking_.push_back(path);

@@ -77,7 +77,7 @@ void Tracer<Shape, Interface, Interior>::follow_unscattered(Path path) {
       walk.roulette = roulette_of_scattered * walk.weight;
       collector_.note("scatter", walk);
       connector_.start(walk);
-      scatter_at(shape_, walk);
+      collide(walk);
       walking_.push_back(walk);
     }
   }
@@ -105,7 +105,7 @@ template <class Shape, class Interface, class Interior>
 void Tracer<Shape, Interface, Interior>::leave_smooth(Path& path) {
   if (traps(path)) {
     roll(path);
-    if constexpr (scattering) scatter_at(shape_, path);
+    if constexpr (scattering) collide(path);
     return;
   }
   const double reflectance = fresnel(dot(path.d, path.n), 1 / interface_.ior);
@@ -115,7 +115,6 @@ void Tracer<Shape, Interface, Interior>::leave_smooth(Path& path) {
     if constexpr (smooth) pdf = connector_.pdf(path);
     leave(path, out, path.weight * (1 - reflectance), pdf);
   }
-  path.phase = 0;
   path.weight *= reflectance;
   path.d = reflect(-path.d, path.n);
 }
