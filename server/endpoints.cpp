@@ -23,6 +23,10 @@ HttpResponse get_environments(Endpoints& endpoints, const HttpRequest& request, 
   return tagged_json(request, api::environments_json(endpoints.catalog));
 }
 
+HttpResponse get_objects(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+  return tagged_json(request, api::objects_json(endpoints.catalog));
+}
+
 HttpResponse get_displays(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
   return tagged_json(request, api::displays_json(endpoints.colors.displays()));
 }
@@ -73,6 +77,7 @@ constexpr std::array routes{
     Route{"POST", "/v1/sweeps/{id}/cancel", cancel_sweep},
     Route{"GET", "/v1/absorbers", get_absorbers},
     Route{"GET", "/v1/environments", get_environments},
+    Route{"GET", "/v1/objects", get_objects},
     Route{"GET", "/v1/displays", get_displays},
     Route{"GET", "/", get_page},
     Route{"GET", "/web/{file}", get_web_file},
