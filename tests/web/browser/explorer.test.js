@@ -177,6 +177,25 @@ test('who changes one control and goes on to the next finds it there', async t =
   assert.match(page.url(), /ior=1\.4&anisotropy=0\.25/);
 });
 
+test('objects, a backdrop and an oil film have the controls that the service lists', async t => {
+  const page = await opened(t);
+  await finished(page);
+  const {objects} = await server.json('/v1/objects');
+  const choose = page.locator('[data-pointer="/scene/object"]');
+  assert.deepEqual(await choose.locator('option').allTextContents(), objects.map(({name}) => name));
+  const box = objects.find(({name}) => name === 'box');
+  const shown = await pictureHash(page);
+  await choose.selectOption('box');
+  for (const {name} of box.parameters)
+    assert.ok(await page.locator(`[data-pointer="/scene/object/${name}"]`).isVisible(), name);
+  await page.locator('[data-pointer="/scene/backdrop"]').check();
+  await page.locator('[data-pointer="/material/oil_film"]').check();
+  await finished(page);
+  assert.notEqual(await pictureHash(page), shown);
+  assert.equal(await page.locator('[role=alert] .problem').count(), 0);
+  assert.match(decodeURIComponent(page.url()), /object=\{"type":"box".*oil_film=\{.*backdrop=\{/);
+});
+
 test('a link restores the view', async t => {
   const page = await opened(t,
       `absorption=0.8&roughness=0.1&scattering=0.6&absorber=%7B%22rgb%22%3A%5B0.2%2C0.5%2C1%5D%7D&ior=1.4&environment=sunrise&${quick}`);
