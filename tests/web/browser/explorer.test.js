@@ -31,7 +31,7 @@ async function opened(t, hash = quick, options = {}) {
 /// All samples are there, and so is their picture.
 async function finished(page) {
   await page.waitForFunction(() => document.getElementById('progress').value === 1 &&
-      /^Finished/.test(document.getElementById('announce').textContent), null, {timeout: 60_000});
+      /^Finished/.test(document.getElementById('announce').textContent), null, {timeout: 40_000});
   await page.waitForFunction(() => document.getElementById('picture').src.startsWith('blob:'));
 }
 
