@@ -8,7 +8,7 @@ import {launch, open, pictureHash, pictureTimes, Server, shoot} from './support.
 
 const axe = await readFile(new URL('../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
 // What is quick to trace, and small.
-const quick = 'size=256&samples=16';
+const quick = 'size=256&samples=4';
 
 let server, browser;
 before(async () => {
@@ -31,7 +31,7 @@ async function opened(t, hash = quick, options = {}) {
 /// All samples are there, and so is their picture.
 async function finished(page) {
   await page.waitForFunction(() => document.getElementById('progress').value === 1 &&
-      /^Finished/.test(document.getElementById('announce').textContent), null, {timeout: 40_000});
+      /^Finished/.test(document.getElementById('announce').textContent), null, {timeout: 60_000});
   await page.waitForFunction(() => document.getElementById('picture').src.startsWith('blob:'));
 }
 
