@@ -10,7 +10,7 @@ cd "$(dirname "$0")"
 parts=${PARTS:-release asan tsan fuzz}
 
 began=$SECONDS
-bash .ci/install_packages.sh
+bash .ci/install_packages.sh .ci/build_packages.txt .ci/web_packages.txt
 export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 # What one clone has compiled serves the others.
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1

@@ -29,6 +29,8 @@ void read_appearance(const json& value, const Catalog& catalog, AppearanceReques
   if (const json* material = request.find("material", Presence::required))
     read_material(*material, request.pointer_to("material"), catalog, MaterialPoint::required,
                   out.material, faults);
+  if (out.material.oil_film)
+    faults.add("/material/oil_film", "covers a part of a body, which a slab has not");
   if (const json* given = request.find("slab", Presence::required)) {
     ObjectReader slab(*given, request.pointer_to("slab"), faults);
     out.thickness_mm = slab.number("thickness_mm", {1e-6, 1e6}, Presence::required).value_or(1);
@@ -83,6 +85,7 @@ std::variant<AppearanceRequest, Problem> parse_appearance_request(std::string_vi
   auto& [value, faults] = std::get<JsonDocument>(read);
   AppearanceRequest request;
   request.material = catalog.defaults.material;
+  request.material.oil_film.reset();
   request.seed = catalog.defaults.seed;
   read_appearance(value, catalog, request, faults);
   if (!faults.empty()) return invalid_request(faults);

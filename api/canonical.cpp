@@ -1,5 +1,7 @@
 #include <nlohmann/json.hpp>
 
+#include "api/backdrop.h"
+#include "api/objects.h"
 #include "api/parse.h"
 
 namespace translucube::api {
@@ -46,10 +48,13 @@ json material_json(const MaterialRequest& material) {
   json object{{"ior", material.ior},
               {"anisotropy", material.anisotropy},
               {"reference_thickness_mm", material.reference_thickness_mm},
-              {"pigment", false}};
+              {"pigment", false},
+              {"oil_film", false}};
   if (material.pigment_absorption_per_scattering)
     object["pigment"] = {
         {"absorption_per_scattering", *material.pigment_absorption_per_scattering}};
+  if (const auto& film = material.oil_film)
+    object["oil_film"] = {{"normal", film->normal}, {"offset_mm", film->offset_mm}};
   const auto* coefficients = std::get_if<CoefficientsRequest>(&material.point);
   if (coefficients)
     object["coefficients"] = point_json(*coefficients);
@@ -61,11 +66,14 @@ json material_json(const MaterialRequest& material) {
 }
 
 json object_json(const ObjectRequest& object) {
-  return std::visit(Overloaded{[](const SphereObject& sphere) {
-                                 return json{{"type", "sphere"}, {"radius_mm", sphere.radius_mm}};
-                               },
-                               [](const MeshRequest& mesh) {
+  return std::visit(Overloaded{[](const MeshRequest& mesh) {
                                  return json{{"type", "mesh"}, {"file", mesh.file}};
+                               },
+                               []<class Object>(const Object& own) {
+                                 json values{{"type", ObjectKind<Object>::name}};
+                                 for (const auto& parameter : ObjectKind<Object>::parameters)
+                                   values[parameter.name] = own.*parameter.member;
+                                 return values;
                                }},
                     object);
 }
@@ -83,6 +91,15 @@ json environment_json(const EnvironmentRequest& environment) {
                            environment.source);
   object["rotation_deg"] = environment.rotation_deg;
   object["scale"] = environment.scale;
+  return object;
+}
+
+json backdrop_json(const std::optional<BackdropSpec>& backdrop) {
+  if (!backdrop) return false;
+  json object{{"type", backdrop_types[static_cast<std::size_t>(backdrop->kind)]},
+              {"pattern", pattern_names[static_cast<std::size_t>(backdrop->pattern)]}};
+  for (const BackdropParameter& parameter : backdrop_parameters)
+    object[parameter.name] = *backdrop.*parameter.member;
   return object;
 }
 
@@ -107,6 +124,7 @@ std::string canonical_json(const RenderRequest& request) {
                       {"scene",
                        {{"object", object_json(request.object)},
                         {"environment", environment_json(request.environment)},
+                        {"backdrop", backdrop_json(request.backdrop)},
                         {"camera",
                          {{"position_mm", camera.position_mm},
                           {"target_mm", camera.target_mm},

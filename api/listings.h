@@ -16,6 +16,11 @@ std::string absorbers_json(const Catalog& catalog);
 /// GET /v1/environments: {"environments": [{"name"}]}.
 std::string environments_json(const Catalog& catalog);
 
+/// GET /v1/objects: {"objects": [part...], "backdrop": part, "oil_film": part}, each part {"name",
+/// "description", "parameters": [{"name", "type", "description", and what bounds it}]}: enough to
+/// build a form of.
+std::string objects_json(const Catalog& catalog);
+
 /// GET /v1/displays: {"displays": [{"name", "views": [...]}]}, the defaults first.
 std::string displays_json(const std::vector<Display>& displays);
 

@@ -85,6 +85,9 @@ void refuse_what_the_model_cannot_serve(const json& value, const std::string& po
     faults.add(pointer + "/material/cube/scattering",
                "the dipole model needs finite coefficients of a pigment; ask for less than 1, or "
                "for the transport model");
+  if (request.material.oil_film)
+    faults.add(pointer + "/material/oil_film",
+               "the dipole model knows one interface; ask for the transport model");
   if (std::fabs(request.material.anisotropy) > largest_anisotropy_of_dipole) {
     const bool in_coefficients = value.contains("/material/coefficients/g"_json_pointer);
     faults.add(pointer + (in_coefficients ? "/material/coefficients/g" : "/material/anisotropy"),

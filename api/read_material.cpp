@@ -93,6 +93,22 @@ void read_pigment(const json& value, const std::string& pointer, std::optional<d
   }
 }
 
+void read_oil_film(const json& value, const std::string& pointer,
+                   std::optional<OilFilmRequest>& out, Faults& faults) {
+  if (value.is_boolean() && !value.get<bool>()) return out.reset();
+  if (!value.is_object())
+    return faults.add(pointer, "must be false or {\"normal\": [x, y, z], \"offset_mm\": number}");
+  ObjectReader reader(value, pointer, faults);
+  OilFilmRequest film = out.value_or(OilFilmRequest{});
+  if (const auto normal = reader.triple("normal", {})) {
+    film.normal = *normal;
+    if (*normal == std::array<double, 3>{}) reader.fault("normal", "must not be zero");
+  }
+  if (const auto offset = reader.number("offset_mm", {-1e12, 1e12})) film.offset_mm = *offset;
+  reader.refuse_unknown_keys();
+  out = film;
+}
+
 }  // namespace
 
 void read_absorber(const json& value, const std::string& pointer, const Catalog& catalog,
@@ -159,6 +175,8 @@ void read_material(const json& value, const std::string& pointer, const Catalog&
   if (const json* pigment = material.find("pigment"))
     read_pigment(*pigment, material.pointer_to("pigment"), out.pigment_absorption_per_scattering,
                  faults);
+  if (const json* film = material.find("oil_film"))
+    read_oil_film(*film, material.pointer_to("oil_film"), out.oil_film, faults);
   const auto* given = std::get_if<CoefficientsRequest>(&out.point);
   if (out.pigment_absorption_per_scattering && given != nullptr &&
       given->sigma_a != std::variant<std::array<double, 3>, double>{0.0})

@@ -10,40 +10,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Range radius_range{1e-6, 1e9};      // mm
 constexpr Range position_range{-1e12, 1e12};  // mm: room around the largest sphere
 // Radiance is single precision, and the error estimate squares it: factors up to 1e9 keep
 // (constant x scale)^2 finite.
 constexpr Range radiance_range{0, 1e9};
-
-void read_object(const json& value, const std::string& pointer, const Catalog& catalog,
-                 ObjectRequest& out, Faults& faults) {
-  ObjectReader object(value, pointer, faults);
-  const auto type = object.string("type");
-  const bool known_type = !object.has("type") || type == "sphere" || type == "mesh";
-  if (type && !known_type) object.fault("type", "must be sphere or mesh");
-  const bool mesh = type ? type == "mesh" : std::holds_alternative<MeshRequest>(out);
-  if (mesh) {
-    if (const auto file = object.string("file", Presence::required)) {
-      const std::string where = object.pointer_to("file");
-      if (auto path = resolve_file(*file, where, catalog, faults)) {
-        try {
-          check_mesh(*path);
-          out = MeshRequest{std::move(*path)};
-        } catch (const SceneError& error) {
-          faults.add(where, error.what());
-        }
-      }
-    }
-  } else {
-    const auto* sphere = std::get_if<SphereObject>(&out);
-    const auto radius =
-        object.number("radius_mm", radius_range, sphere ? Presence::optional : Presence::required);
-    if (radius) out = SphereObject{*radius};
-    if (!known_type) object.find("file");  // one fault says enough
-  }
-  object.refuse_unknown_keys();
-}
 
 void read_environment(const json& value, const std::string& pointer, const Catalog& catalog,
                       EnvironmentRequest& out, Faults& faults) {
@@ -111,6 +81,8 @@ void read_scene(const json& value, const std::string& pointer, const Catalog& ca
   if (const json* environment = scene.find("environment"))
     read_environment(*environment, scene.pointer_to("environment"), catalog, out.environment,
                      faults);
+  if (const json* backdrop = scene.find("backdrop"))
+    read_backdrop(*backdrop, scene.pointer_to("backdrop"), out.backdrop, faults);
   if (const json* camera = scene.find("camera"))
     read_camera(*camera, scene.pointer_to("camera"), out.camera, faults);
   scene.refuse_unknown_keys();

@@ -25,11 +25,18 @@ struct CoefficientsRequest {
 /// A name from config/absorbers, or the absorber itself.
 using AbsorberRequest = std::variant<std::string, RgbAbsorber, SpectralAbsorber>;
 
+struct OilFilmRequest {
+  std::array<double, 3> normal{1, 0, 0};  ///< not zero, of any length
+  double offset_mm = 0;
+  friend bool operator==(const OilFilmRequest&, const OilFilmRequest&) = default;
+};
+
 struct MaterialRequest {
   std::variant<CubePoint, CoefficientsRequest> point;
   AbsorberRequest absorber;  ///< not used where coefficients give sigma_a per channel
   double ior = 1.5, anisotropy = 0, reference_thickness_mm = 10;
   std::optional<double> pigment_absorption_per_scattering;
+  std::optional<OilFilmRequest> oil_film;
   friend bool operator==(const MaterialRequest&, const MaterialRequest&) = default;
 };
 
@@ -55,7 +62,8 @@ struct MeshRequest {
   std::string file;
   friend bool operator==(const MeshRequest&, const MeshRequest&) = default;
 };
-using ObjectRequest = std::variant<SphereObject, MeshRequest>;
+using ObjectRequest =
+    std::variant<SphereObject, MeshRequest, PlateObject, BoxObject, WedgeObject, BowlObject>;
 
 struct CameraRequest {
   std::array<double, 3> position_mm{0, 0, 90}, target_mm{0, 0, 0}, up{0, 1, 0};
@@ -69,6 +77,7 @@ struct RenderRequest {
   MaterialRequest material;
   ObjectRequest object;
   EnvironmentRequest environment;
+  std::optional<BackdropSpec> backdrop;
   CameraRequest camera;
   int width = 512, height = 512;
   Quality quality;

@@ -27,6 +27,13 @@ void read_material(const nlohmann::json& value, const std::string& pointer, cons
 void read_scene(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
                 RenderRequest& out, Faults& faults);
 
+void read_object(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
+                 ObjectRequest& out, Faults& faults);
+
+/// False, or the object.
+void read_backdrop(const nlohmann::json& value, const std::string& pointer,
+                   std::optional<BackdropSpec>& out, Faults& faults);
+
 /// The name of an absorber, or the absorber itself.
 void read_absorber(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
                    AbsorberRequest& out, Faults& faults);

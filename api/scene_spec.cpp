@@ -59,8 +59,16 @@ Material without_pigment(const MaterialRequest& request, const Catalog& catalog)
   return material;
 }
 
+/// v / |v|, without overflow or underflow on the way.
+Vec3 direction(const std::array<double, 3>& v) {
+  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  return normalize({v[0] / largest, v[1] / largest, v[2] / largest});
+}
+
 Material material_of(const MaterialRequest& request, const Catalog& catalog) {
   Material material = without_pigment(request, catalog);
+  if (const auto& film = request.oil_film)
+    material.oil_film = OilFilm{direction(film->normal), film->offset_mm};
   const std::optional<double>& ratio = request.pigment_absorption_per_scattering;
   if (!ratio) return material;
   // The scatterers absorb: their density gives both coefficients.
@@ -92,8 +100,8 @@ SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
   spec.material = material_of(request.material, catalog);
   spec.model = light_model(request, spec.material);
   spec.object = std::visit(
-      Overloaded{[](const SphereObject& sphere) -> ObjectSpec { return sphere; },
-                 [](const MeshRequest& mesh) -> ObjectSpec { return MeshObject{mesh.file}; }},
+      Overloaded{[](const MeshRequest& mesh) -> ObjectSpec { return MeshObject{mesh.file}; },
+                 [](const auto& object) -> ObjectSpec { return object; }},
       request.object);
   using EnvironmentSource = decltype(spec.environment.source);
   spec.environment.source =
@@ -109,6 +117,7 @@ SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
                  request.environment.source);
   spec.environment.rotation_deg = request.environment.rotation_deg;
   spec.environment.scale = request.environment.scale;
+  spec.backdrop = request.backdrop;
   spec.camera = {vector(request.camera.position_mm), vector(request.camera.target_mm),
                  vector(request.camera.up), request.camera.vfov_deg};
   spec.width = request.width;

@@ -81,6 +81,8 @@ ServerConfig read_server(const json& value, const std::string& pointer, ServerCo
     server.interactive_seconds = *seconds;
   if (const auto bytes = object.integer("artifact_bytes", 1 << 20, std::uint64_t{1} << 60))
     server.artifact_bytes = *bytes;
+  if (const auto bytes = object.integer("explorable_memory_bytes", 0, std::uint64_t{1} << 60))
+    server.explorable_memory_bytes = *bytes;
 
   if (const auto format = object.string("log_format")) {
     if (*format == "json")

@@ -40,6 +40,8 @@ struct ServerConfig {
   double interactive_seconds = 10;  ///< a render that is traced for longer waits with the sweeps
   std::uint64_t artifact_bytes = std::uint64_t{20} << 30;  ///< of finished pictures on the disk
 
+  std::uint64_t explorable_memory_bytes = std::uint64_t{256} << 20;  ///< of films kept in memory
+
   LogFormat log_format = LogFormat::logfmt;
 };
 

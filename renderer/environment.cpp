@@ -31,8 +31,9 @@ struct ImageEnvironment::Tables {
   std::vector<float> rows, cells;
 };
 
-ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, double scale)
-    : width_(image.width), height_(image.height), rotation_rad_(rotation_rad) {
+ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, double scale,
+                                   EnvironmentSide side)
+    : width_(image.width), height_(image.height), rotation_rad_(rotation_rad), side_(side) {
   const auto tables = std::make_shared<Tables>();
   tables->texels.resize(std::size_t(width_) * height_);
   for (std::size_t i = 0; i < tables->texels.size(); ++i) {
@@ -47,6 +48,14 @@ ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, doub
   cells_ = tables->cells;
   tables_ = tables;
   build_irradiance();
+}
+
+bool ImageEnvironment::hides(int column) const {
+  if (side_ == EnvironmentSide::all || width_ < 4) return false;
+  const auto is_behind = [&](int border) {
+    return std::cos(2 * pi * (0.5 - double(border) / width_) + rotation_rad_) < 0;
+  };
+  return is_behind(column) && is_behind(column + 1);
 }
 
 void ImageEnvironment::build_sampling(Tables& tables) {
@@ -73,10 +82,14 @@ void ImageEnvironment::build_sampling(Tables& tables) {
   };
   const std::size_t n = texels.size();
   std::vector<double> weight(n);
+  std::vector<char> hidden;
+  hidden.reserve(width_);
+  for (int x = 0; x < width_; ++x) hidden.push_back(hides(x));
   double total = 0;
   for (int y = 0; y < height_; ++y) {
     const double solid_angle = std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_);
     for (int x = 0; x < width_; ++x) {
+      if (hidden[x]) continue;
       const double mean = (row(x, y - 1) + 6 * row(x, y) + row(x, y + 1)) / 64;
       total += weight[std::size_t(y) * width_ + x] = mean * solid_angle;
     }
@@ -129,7 +142,10 @@ void ImageEnvironment::build_irradiance() {
   constexpr std::array<double, 9> lobe{1, 2. / 3, 2. / 3, 2. / 3, .25, .25, .25, .25, .25};
   std::array<std::array<double, 3>, 9> moments{};
   std::vector<double> sines, cosines;
+  std::vector<int> columns;
   for (int x = 0; x < width_; ++x) {
+    if (hides(x)) continue;
+    columns.push_back(x);
     const double azimuth = 2 * pi * (0.5 - (x + 0.5) / width_) + rotation_rad_;
     sines.push_back(std::sin(azimuth));
     cosines.push_back(std::cos(azimuth));
@@ -138,14 +154,14 @@ void ImageEnvironment::build_irradiance() {
     const double theta = pi * (y + 0.5) / height_, sin_theta = std::sin(theta);
     const double solid_angle =
         2 * pi / width_ * (std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_));
-    for (int x = 0; x < width_; ++x) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
       const std::array<double, 9> basis =
-          quadratic_basis({sin_theta * sines[x], std::cos(theta), sin_theta * cosines[x]});
-      const Texel& t = texels_[std::size_t(y) * width_ + x];
-      for (std::size_t i = 0; i < 9; ++i) {
-        moments[i][0] += solid_angle * basis[i] * t.r;
-        moments[i][1] += solid_angle * basis[i] * t.g;
-        moments[i][2] += solid_angle * basis[i] * t.b;
+          quadratic_basis({sin_theta * sines[i], std::cos(theta), sin_theta * cosines[i]});
+      const Texel& t = texels_[std::size_t(y) * width_ + columns[i]];
+      for (std::size_t k = 0; k < 9; ++k) {
+        moments[k][0] += solid_angle * basis[k] * t.r;
+        moments[k][1] += solid_angle * basis[k] * t.g;
+        moments[k][2] += solid_angle * basis[k] * t.b;
       }
     }
   }
@@ -269,7 +285,8 @@ EnvironmentSample ImageEnvironment::sample(Sample2 u) const {
   draw_row(draw);
   MapCoordinates at = draw_cell(draw, u.v);
   at.sin_theta = std::sin(static_cast<float>(pi) / static_cast<float>(height_) * at.y);
-  return {direction(at), value_at(at)};
+  const Vec3 towards = direction(at);
+  return {towards, seen(towards, value_at(at))};
 }
 
 std::vector<EnvironmentSample> ImageEnvironment::sample(std::span<const Sample2> u) const {

@@ -28,6 +28,9 @@ struct UniformEnvironment {
   Rgb radiance{1, 1, 1};
 };
 
+/// What of a map is seen: a plane behind the body hides what lies towards -z.
+enum class EnvironmentSide { all, front };
+
 /// Where a direction lies in a map.
 struct MapCoordinates {
   float x, y;       ///< in pixels, centres at halves
@@ -43,9 +46,14 @@ struct MapGeometry {
 class ImageEnvironment {
  public:
   /// `rotation_rad` turns the map about +y, positive from +z towards +x. Pixels finite.
-  ImageEnvironment(const Image& image, double rotation_rad, double scale);
+  ImageEnvironment(const Image& image, double rotation_rad, double scale,
+                   EnvironmentSide side = EnvironmentSide::all);
 
-  EnvironmentValue value_from(Vec3 direction) const { return value_at(coordinates(direction)); }
+  EnvironmentValue value_from(Vec3 direction) const {
+    return seen(direction, value_at(coordinates(direction)));
+  }
+  EnvironmentSide side() const { return side_; }
+  /// Of the map, whether it is hidden or not.
   EnvironmentValue value_at(MapCoordinates at) const;
   MapGeometry geometry() const;
   /// Calls the pixels for value_at() into the cache.
@@ -65,6 +73,12 @@ class ImageEnvironment {
   std::array<Rgb, 3> irradiance_by_order(Vec3 n) const;
 
  private:
+  EnvironmentValue seen(Vec3 direction, EnvironmentValue value) const {
+    if (side_ == EnvironmentSide::front && direction.z < 0) value.radiance = {};
+    return value;
+  }
+  /// Whether all of a column of cells is hidden.
+  bool hides(int column) const;
   struct Texel {
     float r, g, b, weight;  ///< weight: probability of the pixel cell x number of cells
   };
@@ -87,6 +101,7 @@ class ImageEnvironment {
 
   int width_, height_;
   double rotation_rad_;
+  EnvironmentSide side_;
   std::span<const Texel> texels_;
   // The chances of the cells, block by block of the map and summed up: over the blocks, and within
   // each over its rows and over its cells (row by row, 1 at its end).

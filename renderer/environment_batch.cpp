@@ -65,6 +65,9 @@ void EnvironmentBatch::look_up(const ImageEnvironment& environment) {
   for (std::size_t i = 0; i < size; ++i) environment.prefetch(u[i], v[i]);
   for (std::size_t i = 0; i < size; ++i)
     value[i] = environment.value_at({u[i], v[i], sin_theta[i]});
+  if (environment.side() == EnvironmentSide::front)
+    for (std::size_t i = 0; i < size; ++i)
+      if (z[i] < 0) value[i].radiance = {};
 }
 
 }  // namespace translucube

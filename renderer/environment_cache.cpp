@@ -7,15 +7,16 @@
 namespace translucube {
 
 std::shared_ptr<const ImageEnvironment> EnvironmentCache::get(const std::filesystem::path& file,
-                                                              double rotation_rad, double scale) {
+                                                              double rotation_rad, double scale,
+                                                              EnvironmentSide side) {
   std::error_code unreadable;  // read_image() says it better
   const Key key{file, std::filesystem::file_size(file, unreadable),
-                std::filesystem::last_write_time(file, unreadable), rotation_rad, scale};
+                std::filesystem::last_write_time(file, unreadable), rotation_rad, scale, side};
   if (auto found = find(key)) return found;
   // Without the lock: who asks for another environment does not wait, and two who ask for the same
   // one at first both make it.
   const Image image = read_image(file);
-  auto made = std::make_shared<const ImageEnvironment>(image, rotation_rad, scale);
+  auto made = std::make_shared<const ImageEnvironment>(image, rotation_rad, scale, side);
   keep({key, std::uint64_t(image.width) * std::uint64_t(image.height), made});
   return made;
 }

@@ -15,9 +15,10 @@ namespace translucube {
 class EnvironmentCache {
  public:
   /// The environment of an image file, from memory if the file, as its size and time of change tell
-  /// it, was asked for not long ago with the same rotation and scale. Throws ImageError.
+  /// it, was asked for not long ago with the same rotation, scale and side. Throws ImageError.
   std::shared_ptr<const ImageEnvironment> get(const std::filesystem::path& file,
-                                              double rotation_rad, double scale);
+                                              double rotation_rad, double scale,
+                                              EnvironmentSide side = EnvironmentSide::all);
 
  private:
   /// Of images that are kept, in pixels (24 bytes each), the last one apart.
@@ -28,6 +29,7 @@ class EnvironmentCache {
     std::uintmax_t bytes;
     std::filesystem::file_time_type changed;
     double rotation_rad, scale;
+    EnvironmentSide side;
     friend bool operator==(const Key&, const Key&) = default;
   };
   struct Entry {

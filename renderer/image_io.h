@@ -34,6 +34,7 @@ void prepare_image_codecs();
 struct ImageMetadata {
   std::string request;     ///< the canonical request, JSON text
   std::string colorspace;  ///< of the pixels: "lin_rec709", "ACEScg", "XYZ" or "<display>/<view>"
+  int png_bits = 16;       ///< a channel; 8 where small files matter more
 };
 
 /// Reads any image as linear float RGB (a grey image is spread over the channels, alpha is left
@@ -46,10 +47,10 @@ Image read_image(const std::filesystem::path& file);
 ImageMetadata read_metadata(const std::filesystem::path& file);
 
 /// Writes scene-linear float (EXR: 32-bit float, with chromaticities of the colorspace) or display
-/// values (PNG, TIFF: 16 bit; JPEG: 8 bit, quality 95), with the metadata in the header (PNG text
-/// Description, TIFF ImageDescription, EXIF). TIFF and JPEG have no room for a request of more than
-/// 60,000 bytes and go without it. The same picture gives the same bytes. Throws ImageError; an
-/// incomplete file may stay behind: write to a temporary name.
+/// values (PNG, TIFF: 16 bit, a PNG 8 where metadata says so; JPEG: 8 bit, quality 95), with the
+/// metadata in the header (PNG text Description, TIFF ImageDescription, EXIF). TIFF and JPEG have
+/// no room for a request of more than 60,000 bytes and go without it. The same picture gives the
+/// same bytes. Throws ImageError; an incomplete file may stay behind: write to a temporary name.
 void write_image(const std::filesystem::path& file, const Image& image, ImageFormat format,
                  const ImageMetadata& metadata);
 

@@ -5,6 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "renderer/vec.h"
+
 namespace translucube {
 
 /// Absorption relative to its largest channel, one value a channel: plain RGB Beer-Lambert.
@@ -36,6 +38,13 @@ struct Coefficients {
   friend bool operator==(const Coefficients&, const Coefficients&) = default;
 };
 
+/// A film of matching index over the part of the surface where dot(p, normal) >= offset_mm: there
+/// the boundary is smooth, whatever the body's roughness, and nothing else changes.
+struct OilFilm {
+  Vec3 normal{1, 0, 0};  ///< unit
+  double offset_mm = 0;
+};
+
 /// Everything optical about a body.
 struct Material {
   Coefficients coefficients;
@@ -45,6 +54,7 @@ struct Material {
   /// Pigments: the scatterers are the absorbers, sigma_a(lambda) = sigma_s x this x k(lambda), and
   /// coefficients.sigma_a_peak says the same. As sigma_s grows without bound the albedo stays.
   std::optional<double> absorption_per_scattering;
+  std::optional<OilFilm> oil_film;
   /// Between microfacets (Heitz et al. 2016); without it a rough interface loses light.
   bool multiple_scattering = true;
 };

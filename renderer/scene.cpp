@@ -15,27 +15,71 @@ struct PlacedShape {
   Shape shape;
   Vec3 center_mm;
   double unit_mm;
+  double back;  ///< least z, in units
 };
 
-PlacedShape make_shape(const SphereObject& sphere) { return {Sphere{}, {}, sphere.radius_mm}; }
+PlacedShape make_shape(const SphereObject& sphere) { return {Sphere{}, {}, sphere.radius_mm, -1}; }
 
 PlacedShape make_shape(const MeshObject& object) {
   try {
     TriangleMesh mesh = read_mesh(object.file);
     close_mesh(mesh);
     const BuiltMesh built = build_mesh(mesh);
-    return {built.mesh, built.center, built.radius};
+    const double back =
+        std::ranges::min(mesh.vertices, {}, [](Vec3 v) { return v.z; }).z - built.center.z;
+    return {built.mesh, built.center, built.radius, back / built.radius};
   } catch (const MeshError& error) {
     throw SceneError(SceneError::Part::object, error.what());
   }
 }
 
-Environment make_environment(const EnvironmentSpec& spec, EnvironmentCache& cache) {
+/// A body within a box of these extents, made in units of the box's bounding sphere.
+template <class Make>
+PlacedShape make_flat_faced(Vec3 extents_mm, Make&& make) {
+  const double unit = 0.5 * length(extents_mm);
+  return {make(extents_mm * (0.5 / unit), unit), {}, unit, -0.5 * extents_mm.z / unit};
+}
+
+PlacedShape make_shape(const PlateObject& plate) {
+  return make_flat_faced({plate.width_mm, plate.height_mm, plate.thickness_mm},
+                         [](Vec3 half, double) { return make_box(half); });
+}
+
+PlacedShape make_shape(const BoxObject& box) {
+  return make_flat_faced({box.width_mm, box.height_mm, box.depth_mm},
+                         [](Vec3 half, double) { return make_box(half); });
+}
+
+PlacedShape make_shape(const WedgeObject& wedge) {
+  return make_flat_faced(
+      {wedge.width_mm, wedge.height_mm, wedge.thick_mm},
+      [&](Vec3 half, double unit) { return make_wedge(half, wedge.thin_mm / unit); });
+}
+
+PlacedShape make_shape(const BowlObject& bowl) {
+  const double inner = 1 - bowl.thickness_mm / bowl.radius_mm;
+  return {Bowl(inner), {0, 0.5 * bowl.radius_mm, 0}, bowl.radius_mm, -1};
+}
+
+Backdrop make_backdrop(const BackdropSpec& spec, const PlacedShape& placed) {
+  const double unit = placed.unit_mm;
+  return {spec.kind,
+          spec.pattern,
+          placed.back - std::fmax(contact_gap, spec.distance_mm / unit),
+          -placed.center_mm.x / unit,
+          -placed.center_mm.y / unit,
+          spec.period_mm / unit,
+          static_cast<float>(spec.light),
+          static_cast<float>(spec.dark)};
+}
+
+Environment make_environment(const EnvironmentSpec& spec, EnvironmentSide side,
+                             EnvironmentCache& cache) {
   if (const auto* constant = std::get_if<ConstantEnvironmentSpec>(&spec.source))
     return UniformEnvironment{constant->radiance * static_cast<float>(spec.scale)};
   try {
     return *cache.get(std::get<ImageEnvironmentSpec>(spec.source).file,
-                      spec.rotation_deg * std::numbers::pi / 180, spec.scale);
+                      spec.rotation_deg * std::numbers::pi / 180, spec.scale, side);
   } catch (const ImageError& error) {
     throw SceneError(SceneError::Part::environment, error.what());
   }
@@ -64,8 +108,9 @@ Interior make_interior(const Material& material, double unit_mm) {
   // Where both are infinite, absorption wins: the body is black.
   if (std::isinf(material.coefficients.sigma_a_peak)) return BlackInterior{};
   if (std::isinf(material.coefficients.sigma_s))
-    return LambertianInterior{std::visit([](const auto& i) { return InterfacedLambertian(i); },
-                                         make_interface(material))};
+    return LambertianInterior{
+        std::visit([](const auto& i) { return InterfacedLambertian(i); }, make_interface(material)),
+        InterfacedLambertian(SmoothInterface{material.ior})};
   if (material.coefficients.sigma_s == 0) return ClearInterior{};
   return ScatteringInterior{Medium{material.coefficients.sigma_s * unit_mm, material.g}};
 }
@@ -126,14 +171,22 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   scene->unit_mm = unit;
   scene->shape = placed.shape;
   scene->interface = make_interface(spec.material);
+  if (const auto& film = spec.material.oil_film)
+    scene->oiled =
+        OiledPart{film->normal, (film->offset_mm - dot(placed.center_mm, film->normal)) / unit};
   Material traced = spec.material;
   traced.coefficients.sigma_a_peak = least_absorption(spec);
   scene->interior = make_interior(traced, unit);
-  scene->environment = make_environment(spec.environment, environments ? *environments : own);
+  if (spec.backdrop) scene->backdrop = make_backdrop(*spec.backdrop, placed);
+  scene->environment = make_environment(
+      spec.environment, spec.backdrop ? EnvironmentSide::front : EnvironmentSide::all,
+      environments ? *environments : own);
   scene->camera = Camera(to_body(spec.camera.position_mm), to_body(spec.camera.target_mm),
                          spec.camera.up, spec.camera.vfov_deg, spec.width, spec.height);
   scene->camera_inside =
       std::visit([&](const auto& s) { return s.inside(scene->camera.position); }, scene->shape);
+  if (scene->backdrop && scene->camera.position.z <= scene->backdrop->z)
+    throw SceneError(SceneError::Part::camera, "the camera is behind the backdrop");
   if (const auto* model = std::get_if<DipoleModel>(&spec.model)) use_dipole(*model, spec, *scene);
   const bool open = std::holds_alternative<ClearInterior>(scene->interior) ||
                     std::holds_alternative<ScatteringInterior>(scene->interior) ||

@@ -20,7 +20,27 @@ struct MeshObject {
   std::filesystem::path file;  ///< OBJ or PLY, in millimetres, closed
   friend bool operator==(const MeshObject&, const MeshObject&) = default;
 };
-using ObjectSpec = std::variant<SphereObject, MeshObject>;
+/// The bounding boxes of these are centred at the origin.
+struct PlateObject {
+  double width_mm = 40, height_mm = 40, thickness_mm = 4;  ///< along x, y, z
+  friend bool operator==(const PlateObject&, const PlateObject&) = default;
+};
+struct BoxObject {
+  double width_mm = 28, height_mm = 28, depth_mm = 28;  ///< along x, y, z
+  friend bool operator==(const BoxObject&, const BoxObject&) = default;
+};
+/// A plate with a flat back whose thickness rises from left (-x) to right.
+struct WedgeObject {
+  double width_mm = 40, height_mm = 40, thin_mm = 0, thick_mm = 10;
+  friend bool operator==(const WedgeObject&, const WedgeObject&) = default;
+};
+/// Half of a spherical shell, open upwards (+y).
+struct BowlObject {
+  double radius_mm = 20, thickness_mm = 3;  ///< outer radius, of the wall
+  friend bool operator==(const BowlObject&, const BowlObject&) = default;
+};
+using ObjectSpec =
+    std::variant<SphereObject, MeshObject, PlateObject, BoxObject, WedgeObject, BowlObject>;
 
 struct ImageEnvironmentSpec {
   std::filesystem::path file;  ///< lat-long, linear RGB
@@ -32,6 +52,27 @@ struct EnvironmentSpec {
   std::variant<ConstantEnvironmentSpec, ImageEnvironmentSpec> source;
   double rotation_deg = 0;  ///< about +y, positive from +z towards +x
   double scale = 1;         ///< multiplies the radiance, >= 0
+};
+
+/// What a patterned plane behind the body is.
+enum class BackdropKind {
+  light_table,  ///< it shines by itself and reflects nothing
+  print,        ///< it reflects as a Lambertian surface what falls on it
+};
+/// Of the light and the dark parts.
+enum class Pattern {
+  plain,    ///< light everywhere
+  checker,  ///< squares, half a period wide
+  stripes,  ///< upright, half a period wide
+  grid,     ///< dark lines, a tenth of a period wide
+};
+struct BackdropSpec {
+  BackdropKind kind = BackdropKind::light_table;
+  Pattern pattern = Pattern::checker;
+  double distance_mm = 0;      ///< from the body's hindmost point (least z)
+  double period_mm = 10;       ///< of the pattern, which is centred at x = y = 0
+  double light = 1, dark = 0;  ///< white radiance, or reflectance in [0, 1]
+  friend bool operator==(const BackdropSpec&, const BackdropSpec&) = default;
 };
 
 struct CameraSpec {
@@ -67,6 +108,7 @@ struct SceneSpec {
   std::optional<Explorable> explorable;
   ObjectSpec object;
   EnvironmentSpec environment;
+  std::optional<BackdropSpec> backdrop;
   CameraSpec camera;
   int width = 512, height = 512;
   std::uint64_t seed = 1;

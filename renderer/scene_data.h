@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "renderer/absorption.h"
+#include "renderer/backdrop.h"
+#include "renderer/bowl.h"
 #include "renderer/bsdf.h"
 #include "renderer/camera.h"
 #include "renderer/dipole_interior.h"
@@ -17,6 +19,7 @@
 #include "renderer/explorable.h"
 #include "renderer/lambertian.h"
 #include "renderer/medium.h"
+#include "renderer/polytope.h"
 #include "renderer/scene.h"
 #include "renderer/shapes.h"
 
@@ -33,10 +36,18 @@ struct DensePigmentInterior {
                   ///< mean free paths of scattering
 };
 struct LambertianInterior {
-  InterfacedLambertian base;  ///< s = 1: closed form
+  InterfacedLambertian base;   ///< s = 1: closed form
+  InterfacedLambertian oiled;  ///< the same under the film, where there is one
 };
 
-using Shape = std::variant<Sphere, Slab, Mesh>;
+/// Where a film smooths the rough interface, in the body's coordinates.
+struct OiledPart {
+  Vec3 normal;
+  double offset = 0;
+  bool covers(Vec3 p) const { return dot(p, normal) >= offset; }
+};
+
+using Shape = std::variant<Sphere, Slab, Mesh, Polytope, Bowl>;
 using Interface = std::variant<SmoothInterface, RoughInterface>;
 using Interior = std::variant<BlackInterior, ClearInterior, ScatteringInterior,
                               DensePigmentInterior, LambertianInterior, DipoleInterior>;
@@ -47,8 +58,10 @@ struct Scene {
   double unit_mm = 1;  ///< the body's unit of length
   Shape shape;
   Interface interface;
+  std::optional<OiledPart> oiled;  ///< of a rough interface
   Interior interior;
   Environment environment;
+  std::optional<Backdrop> backdrop;  ///< with it, the environment shows its front half only
   Camera camera;
   bool camera_inside = false;
   std::vector<Lane> lanes;          ///< of the film, unless it is explorable; [0] is the material's

@@ -74,6 +74,8 @@ class Tracer {
         tile_(tile),
         collector_(scene, tile, log),
         lights_(lights_of(scene, key)),
+        may_come_back_(!shape.convex() ||
+                       (scene.backdrop && scene.backdrop->kind == BackdropKind::print)),
         connector_(make_connector(scene, key)) {}
 
   void run(std::uint32_t pass_index, std::uint32_t first, std::uint32_t count) {
@@ -120,8 +122,10 @@ class Tracer {
   }
 
   Connector make_connector(const Scene& scene, std::uint64_t key) {
+    // Vertices look for light through one interface: where there are two, the walk finds it.
+    static const LightList none;
     if constexpr (connecting && !smooth)
-      return Connector(scene, collector_, lights_);
+      return Connector(scene, collector_, scene.oiled ? none : lights_);
     else
       return Connector(scene, collector_, key);
   }
@@ -143,9 +147,9 @@ class Tracer {
     path.n = hit.n;
     collector_.note("enter", path);
     if (!count_event(path)) return;
-    if constexpr (smooth)
+    if (is_smooth_at(path))
       enter_smooth(path);
-    else
+    else if constexpr (!smooth)
       enter_rough(path);
   }
 
@@ -256,10 +260,10 @@ class Tracer {
     if constexpr (open) {
       for (Path& path : leaving_) {
         if (!count_event(path)) continue;
-        if constexpr (smooth) {
+        if (is_smooth_at(path)) {
           leave_smooth(path);
           if (path.survives()) walking_.push_back(path);
-        } else {
+        } else if constexpr (!smooth) {
           leave_rough(path);
         }
       }
@@ -295,6 +299,12 @@ class Tracer {
 
   // ---- light that leaves in all directions (tracer_diffuse.h)
 
+  /// The body right below the interface at path.p.
+  const InterfacedLambertian& diffuse_base(const Path& path) const {
+    if constexpr (lambertian && !smooth)
+      if (is_smooth_at(path)) return interior_.oiled;
+    return interior_.base;
+  }
   /// What the background below path.p sends back through the interface, all that came in.
   void return_diffuse(Path& path);
   /// What the body sends out at a point, of light that went in there or elsewhere: one sample for
@@ -339,8 +349,13 @@ class Tracer {
     path.d = direction;
     path.weight = weight;
     path.pdf = pdf;
-    if (shape_.convex()) return escape(path);
+    if (!may_come_back_) return escape(path);
     path.sampler = from.sampler.split();
+    go_back(path);
+  }
+
+  /// Towards the body once more.
+  void go_back(Path& path) {
     // A model that gains energy has no answer in deep cavities: the branches must not multiply.
     if constexpr (dipole) {
       if (++path.arrivals > 2) path.roulette = 1;
@@ -348,6 +363,12 @@ class Tracer {
     }
     if (path.survives()) arriving_.push_back(path);
   }
+
+  /// A path that leaves towards the backdrop (tracer_backdrop.h): collects its light, or sends it
+  /// back.
+  void meet_backdrop(const Path& path);
+  /// From a print, in all directions.
+  void leave_print(Path path);
 
   struct Escape {
     Vec3 n;
@@ -362,6 +383,11 @@ class Tracer {
   /// To the environment, where many look together.
   void escape(const Path& path) {
     collector_.note("escape", path);
+    if (scene_.backdrop && path.d.z < 0) {
+      meet_backdrop(path);
+      // Nothing of the environment, but a connection may have taken its share of nothing.
+      if (path.pdf == 0 || std::holds_alternative<UniformEnvironment>(scene_.environment)) return;
+    }
     if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
       return collector_.collect(path, uniform->radiance, path.weight);
     if constexpr (connecting && smooth)
@@ -410,6 +436,10 @@ class Tracer {
     collector_.note("boundary", path);
   }
 
+  bool is_smooth_at(const Path& path) const {
+    return smooth || (scene_.oiled && scene_.oiled->covers(path.p));
+  }
+
   bool count_event(Path& path) {
     ++tile_.counters.boundary_events;
     if (++path.events < (scattering ? scattering_event_cap : clear_event_cap)) return true;
@@ -429,7 +459,8 @@ class Tracer {
   const Interior& interior_;
   Tile& tile_;
   Collector collector_;
-  LightList lights_;  ///< of the rough interface
+  LightList lights_;    ///< of the rough interface
+  bool may_come_back_;  ///< whether what leaves may arrive again
   Connector connector_;
   std::conditional_t<connecting, SphereWalk, std::monostate> sphere_walk_;
   /// What was never inside waits apart from the rest: sums of floats depend on their order, and a
@@ -461,6 +492,7 @@ void trace_body(const Shape& shape, const Scene& scene, std::uint32_t pass_index
 
 }  // namespace translucube
 
+#include "renderer/tracer_backdrop.h"
 #include "renderer/tracer_diffuse.h"
 #include "renderer/tracer_rough.h"
 #include "renderer/tracer_smooth.h"

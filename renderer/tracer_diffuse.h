@@ -13,7 +13,8 @@ template <class Shape, class Interface, class Interior>
 void Tracer<Shape, Interface, Interior>::return_diffuse(Path& path) {
   path.length += shortest_length;  // it was inside
   const Frame frame(path.n);
-  const auto emit = [&](Vec3 wi) { return interior_.base.emit(wi); };
+  const InterfacedLambertian& base = diffuse_base(path);
+  const auto emit = [&](Vec3 wi) { return base.emit(wi); };
   connect(path, frame, emit);
   const Vec3 wi = InterfacedLambertian::sample(path.sampler.next2());
   const LobeValue value = emit(wi);

@@ -85,7 +85,7 @@ void Tracer<Shape, Interface, Interior>::follow_unscattered(Path path) {
 
 template <class Shape, class Interface, class Interior>
 bool Tracer<Shape, Interface, Interior>::traps(const Path& path) const {
-  if constexpr (scattering && std::is_same_v<Shape, Sphere>)
+  if constexpr (smooth && scattering && std::is_same_v<Shape, Sphere>)
     return fresnel(dot(path.d, path.n), 1 / interface_.ior) == 1;
   return false;
 }
@@ -111,7 +111,9 @@ void Tracer<Shape, Interface, Interior>::leave_smooth(Path& path) {
   const double reflectance = fresnel(dot(path.d, path.n), 1 / interface_.ior);
   if (reflectance < 1) {
     const Vec3 out = *refract(-path.d, -path.n, 1 / interface_.ior);
-    leave(path, out, path.weight * (1 - reflectance), connector_.pdf(path));
+    double pdf = 0;
+    if constexpr (smooth) pdf = connector_.pdf(path);
+    leave(path, out, path.weight * (1 - reflectance), pdf);
   }
   path.weight *= reflectance;
   path.d = reflect(-path.d, path.n);

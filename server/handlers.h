@@ -9,9 +9,17 @@
 
 namespace translucube::server {
 
-/// What stands in a path in the places of "{id}" and "{point}".
+/// What stands in a path in the places of "{id}", "{point}" and "{file}".
 struct PathIds {
-  std::string id, point;
+  std::string id, point, file;
+
+  /// Where a segment of a pattern goes; nullptr where it stands for itself.
+  std::string* place(std::string_view segment) {
+    return segment == "{id}"      ? &id
+           : segment == "{point}" ? &point
+           : segment == "{file}"  ? &file
+                                  : nullptr;
+  }
 };
 
 // render_endpoints.cpp
@@ -32,6 +40,10 @@ HttpResponse delete_sweep(Endpoints&, const HttpRequest&, const PathIds&);
 HttpResponse get_image(Endpoints&, const HttpRequest&, const PathIds&);
 HttpResponse get_point_image(Endpoints&, const HttpRequest&, const PathIds&);
 HttpResponse get_sheet(Endpoints&, const HttpRequest&, const PathIds&);
+
+// web_endpoint.cpp
+HttpResponse get_page(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse get_web_file(Endpoints&, const HttpRequest&, const PathIds&);
 
 // event_endpoint.cpp
 HttpResponse get_render_events(Endpoints&, const HttpRequest&, const PathIds&);

@@ -2,6 +2,7 @@
 
 #include "api/parse.h"
 #include "server/content.h"
+#include "server/developed_image.h"
 #include "server/job_service_parts.h"
 
 namespace translucube::server {
@@ -136,6 +137,11 @@ Result<ImageFile> JobService::image(const std::string& id, const ImageQuery& que
   auto made = guarded<Result<ImageFile>>([&]() -> Result<ImageFile> {
     const std::optional<Job> job = store_.find(id);
     if (!job || job->sweep_image) return no_such_render();
+    if (query.partial && !api::is_end(job->state))
+      if (const auto live = live_films_.find(id)) {
+        auto partial = partial_image(darkroom_, *live, id, job->request, query);
+        if (partial) return std::move(*partial);
+      }
     if (auto problem = no_picture(job->state)) return std::move(*problem);
     return image_artifact(darkroom_, store_.pictures(id).at(0).content, job->request, query);
   });

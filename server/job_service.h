@@ -19,8 +19,10 @@
 #include "api/sweep_status.h"
 #include "renderer/color.h"
 #include "server/artifact_store.h"
+#include "server/explorable_cache.h"
 #include "server/image_artifacts.h"
 #include "server/job_store.h"
+#include "server/live_films.h"
 #include "server/recent.h"
 #include "server/worker.h"
 
@@ -85,6 +87,8 @@ class JobService {
   /// Cancels if needed and removes all data.
   std::optional<api::Problem> remove(const std::string& id);
   Result<ImageFile> image(const std::string& id, const ImageQuery& query);
+  /// Samples of what `image` with `partial` shows of a render that is being traced; 0: nothing.
+  std::uint32_t samples_to_see(const std::string& id) const { return live_films_.samples(id); }
 
   // Sweeps (job_service_sweeps.cpp).
   /// What a dry run answers, JSON text.
@@ -147,6 +151,8 @@ class JobService {
   std::chrono::steady_clock::time_point probed_at_{};
   std::optional<std::string> probe_failure_;
 
+  LiveFilms live_films_;
+  ExplorableCache explorables_;
   Darkroom darkroom_;
   // What is asked again and again. A render that has ended stays as it is until it is removed; of a
   // picture, it is seen once in a while that it still lies there, and is used.

@@ -52,15 +52,17 @@ JobService::JobService(const api::Catalog& catalog, const ColorConfig& colors, J
       store_(store),
       artifacts_(artifacts),
       metrics_(metrics),
-      darkroom_{catalog, colors, store, artifacts, metrics} {
+      live_films_([this] { changed(); }),
+      explorables_(catalog.server.explorable_memory_bytes),
+      darkroom_{catalog, colors, store, artifacts, metrics, explorables_} {
   clean_artifacts();
-  workers_ =
-      std::make_unique<WorkerPool>(Workshop{catalog, store, artifacts, metrics, std::move(engine),
-                                            catalog.server.threads_per_worker},
-                                   catalog.server.workers, [this] {
-                                     keep_within_quota();
-                                     changed();
-                                   });
+  workers_ = std::make_unique<WorkerPool>(
+      Workshop{catalog, store, artifacts, metrics, live_films_, explorables_, std::move(engine),
+               catalog.server.threads_per_worker},
+      catalog.server.workers, [this] {
+        keep_within_quota();
+        changed();
+      });
 }
 
 JobService::~JobService() { shut_down(); }

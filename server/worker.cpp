@@ -65,7 +65,7 @@ void WorkerPool::work(int worker, std::stop_token stop) {
     std::uint64_t seen = 0;
     {
       const std::lock_guard lock(mutex_);
-      if (draining_) return;
+      if (draining_) break;
       seen = wakes_;
       ++busy_;
     }
@@ -78,12 +78,13 @@ void WorkerPool::work(int worker, std::stop_token stop) {
     if (task)
       run(runner, *task, stop);
     else
-      runner.forget();
+      runner.put_down();
     std::unique_lock lock(mutex_);
     if (--busy_ == 0) idle_.notify_all();
     if (task) continue;
     awake_.wait_for(lock, stop, poll_interval, [&] { return wakes_ != seen; });
   }
+  runner.put_down();
 }
 
 void WorkerPool::run(TaskRunner& runner, const Task& task, std::stop_token stop) {

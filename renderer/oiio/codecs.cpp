@@ -76,9 +76,10 @@ void set_metadata(OIIO::ImageSpec& spec, ImageFormat format, const ImageMetadata
 }
 
 OIIO::ImageSpec output_spec(const Image& image, ImageFormat format, const ImageMetadata& metadata) {
-  OIIO::ImageSpec spec(
-      image.width, image.height, 3,
-      format == ImageFormat::jpeg ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
+  const bool bytes =
+      format == ImageFormat::jpeg || (format == ImageFormat::png && metadata.png_bits == 8);
+  OIIO::ImageSpec spec(image.width, image.height, 3,
+                       bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
   spec.attribute("compression", format == ImageFormat::jpeg ? "jpeg:95" : "zip");
   spec.attribute("jpeg:subsampling", "4:4:4");
   set_metadata(spec, format, metadata);

@@ -31,6 +31,12 @@ json answer_to(const std::string& text) {
       appearance_json(request, measure(request, shipped_catalog(), 1), shipped_catalog()));
 }
 
+TEST(AppearanceRequest, HasNoOilFilm) {
+  EXPECT_THAT(faults_of(R"({"material":{"cube":)" + some_cube +
+                        R"(,"oil_film":{}},"slab":{"thickness_mm":0.2}})"),
+              ElementsAre("/material/oil_film"));
+}
+
 TEST(AppearanceRequest, TheShortestHasDefaults) {
   const auto request =
       std::get<AppearanceRequest>(parse_appearance_request(slab_of(""), shipped_catalog()));

@@ -14,7 +14,8 @@ class RequestGenerator {
   RenderRequest next() {
     RenderRequest request = shipped_catalog().defaults;
     request.material = material();
-    if (coin()) request.object = SphereObject{magnitude(-6, 9)};
+    request.object = object();
+    if (coin()) request.backdrop = backdrop();
     request.environment = {environment_source(), uniform(-1e4, 1e4), coin() ? 0 : magnitude(-9, 9)};
     if (coin())
       request.camera = {{uniform(-90, 90), uniform(-90, 90), uniform(50, 90)},
@@ -38,8 +39,35 @@ class RequestGenerator {
   }
   double unit() { return random_() % 8 == 0 ? 0 : random_() % 8 == 0 ? 1 : uniform(0, 1); }
 
+  ObjectRequest object() {
+    switch (random_() % 6) {
+      case 0:
+        return SphereObject{magnitude(-6, 9)};
+      case 1:
+        return PlateObject{uniform(1, 9), uniform(1, 9), magnitude(-5, 3)};
+      case 2:
+        return BoxObject{uniform(1, 9), uniform(1, 9), uniform(1, 9)};
+      case 3:
+        return WedgeObject{uniform(1, 9), uniform(1, 9), unit(), uniform(1, 9)};
+      case 4:
+        return BowlObject{uniform(10, 90), uniform(1, 9)};
+      default:
+        return shipped_catalog().defaults.object;
+    }
+  }
+
+  BackdropSpec backdrop() {
+    return {static_cast<BackdropKind>(random_() % 2),
+            static_cast<Pattern>(random_() % 4),
+            coin() ? 0 : magnitude(-9, 9),
+            magnitude(-6, 9),
+            unit(),
+            unit()};
+  }
+
   MaterialRequest material() {
     MaterialRequest material = shipped_catalog().defaults.material;
+    if (coin()) material.oil_film = OilFilmRequest{{uniform(-9, 9), unit(), 1}, uniform(-1e4, 1e4)};
     material.ior = uniform(1, 4);
     material.anisotropy = uniform(-0.999, 0.999);
     material.reference_thickness_mm = magnitude(-6, 6);
@@ -129,6 +157,8 @@ TEST(CanonicalRequest, ParsesBackWithoutTheDefaultsItWasMadeWith) {
   other.defaults.quality = SampleTarget{4};
   other.defaults.environment = {ConstantEnvironment{}, 45, 2};
   other.defaults.object = SphereObject{3};
+  other.defaults.backdrop = BackdropSpec{BackdropKind::print, Pattern::grid, 1, 2, 0.5, 0.25};
+  other.defaults.material.oil_film = OilFilmRequest{{0, 1, 0}, 3};
   RequestGenerator generator(4);
   for (int i = 0; i < 200; ++i) {
     const std::string text = canonical_json(generator.next());
@@ -159,16 +189,17 @@ TEST(CanonicalRequest, CoefficientsHaveOnePlaceForAnisotropyAndIor) {
 }
 
 TEST(CanonicalRequest, FillsInEveryDefaultWithSortedKeys) {
-  EXPECT_EQ(canonical_json(accepted(R"({"material":{"cube":)" + some_cube + "}}")),
-            R"({"explorable":false,"image":{"height":512,"width":512},)"
-            R"("material":{"absorber":"red-glass","anisotropy":0.0,)"
-            R"("cube":{"absorption":0.3,"roughness":0.3,"scattering":0.5},)"
-            R"("ior":1.5,"pigment":false,"reference_thickness_mm":10.0},)"
-            R"("model":"transport","quality":{"relative_error":0.02},)"
-            R"("scene":{"camera":{"position_mm":[0.0,0.0,90.0],"target_mm":[0.0,0.0,0.0],)"
-            R"("up":[0.0,1.0,0.0],"vfov_deg":32.0},)"
-            R"("environment":{"image":"forest","rotation_deg":0.0,"scale":1.0},)"
-            R"("object":{"radius_mm":20.0,"type":"sphere"}},"seed":1})");
+  EXPECT_EQ(
+      canonical_json(accepted(R"({"material":{"cube":)" + some_cube + "}}")),
+      R"({"explorable":false,"image":{"height":512,"width":512},)"
+      R"("material":{"absorber":"red-glass","anisotropy":0.0,)"
+      R"("cube":{"absorption":0.3,"roughness":0.3,"scattering":0.5},)"
+      R"("ior":1.5,"oil_film":false,"pigment":false,"reference_thickness_mm":10.0},)"
+      R"("model":"transport","quality":{"relative_error":0.02},)"
+      R"("scene":{"backdrop":false,"camera":{"position_mm":[0.0,0.0,90.0],"target_mm":[0.0,0.0,0.0],)"
+      R"("up":[0.0,1.0,0.0],"vfov_deg":32.0},)"
+      R"("environment":{"image":"forest","rotation_deg":0.0,"scale":1.0},)"
+      R"("object":{"radius_mm":20.0,"type":"sphere"}},"seed":1})");
 }
 
 TEST(CanonicalRequest, KeepsTheFormInWhichTheMaterialWasGiven) {

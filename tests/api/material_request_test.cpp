@@ -46,7 +46,7 @@ TEST(MaterialRequest, DetailsSayWhatIsRight) {
   EXPECT_THAT(fault_at("/material/absorber", material_with(R"("absorber":"x")")),
               HasSubstr("amber, blood, "));
   EXPECT_EQ(fault_at("/material/iro", material_with(R"("iro":1.5)")),
-            "unknown key; known here: absorber, anisotropy, coefficients, cube, ior, pigment, "
+            "unknown key; known here: absorber, anisotropy, coefficients, cube, ior, oil_film, pigment, "
             "reference_thickness_mm");
 }
 

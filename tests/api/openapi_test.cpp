@@ -58,6 +58,7 @@ TEST(OpenApi, DescribesEveryCallOfTheService) {
                                           "post /v1/sweeps/{id}/cancel",
                                           "get /v1/absorbers",
                                           "get /v1/environments",
+                                          "get /v1/objects",
                                           "get /v1/displays",
                                           "get /livez",
                                           "get /readyz",
@@ -97,6 +98,16 @@ TEST(OpenApi, RequestHasTheKeysThatTheParserKnows) {
   EXPECT_EQ(properties(schema("Scene")), known(request_with(R"("scene":{"?":0})")));
   EXPECT_EQ(properties(schema("Object")["oneOf"][0]),
             known(request_with(R"("scene":{"object":{"?":0}})")));
+  for (const json& object : schema("Object")["oneOf"]) {
+    const std::string type = object["properties"]["type"]["const"];
+    if (type == "mesh") continue;  // it would look for its file
+    EXPECT_EQ(properties(object),
+              known(request_with(R"("scene":{"object":{"type":")" + type + R"(","?":0}})")));
+  }
+  EXPECT_EQ(properties(schema("Backdrop")["oneOf"][1]),
+            known(request_with(R"("scene":{"backdrop":{"?":0}})")));
+  EXPECT_EQ(properties(schema("Material")["properties"]["oil_film"]["oneOf"][1]),
+            known(material_with(R"("oil_film":{"?":0})")));
   EXPECT_EQ(properties(schema("Environment")),
             known(request_with(R"("scene":{"environment":{"?":0}})")));
   EXPECT_EQ(properties(schema("Camera")), known(request_with(R"("scene":{"camera":{"?":0}})")));
@@ -134,6 +145,46 @@ void expect_defaults(const json& schema_of_value, const json& value, const std::
 TEST(OpenApi, DefaultsAreThoseOfTheConfiguration) {
   const json config = json::parse(std::ifstream(service_json()));
   expect_defaults(schema("RenderRequest"), config["request_defaults"], "");
+}
+
+/// The document's form of a part that GET /v1/objects lists, whose numbers must be the same.
+void expect_same_parameters(const json& schema, const json& part) {
+  std::set<std::string> listed;
+  for (const json& parameter : part["parameters"]) {
+    const std::string name = parameter["name"];
+    SCOPED_TRACE(part["name"].get<std::string>() + ' ' + name);
+    listed.insert(name);
+    const json& described = schema["properties"][name];
+    for (const char* bound : {"minimum", "maximum", "default"})
+      if (parameter.contains(bound)) {
+        EXPECT_EQ(parameter[bound], described[bound]);
+      }
+    if (parameter.contains("values")) {
+      EXPECT_EQ(parameter["values"], described["enum"]);
+    }
+  }
+  std::set<std::string> keys = properties(schema);
+  if (schema["properties"].contains("type") && schema["properties"]["type"].contains("const"))
+    keys.erase("type");
+  EXPECT_EQ(listed, keys);
+}
+
+TEST(OpenApi, ObjectsAreThoseOfTheListing) {
+  const json listing = json::parse(objects_json(shipped_catalog()));
+  EXPECT_EQ(keys(listing), properties(schema("ObjectList")));
+  std::set<std::string> names;
+  for (const json& object : schema("Object")["oneOf"]) {
+    const std::string type = object["properties"]["type"]["const"];
+    names.insert(type);
+    for (const json& part : listing["objects"])
+      if (part["name"] == type) expect_same_parameters(object, part);
+  }
+  std::set<std::string> listed;
+  for (const json& part : listing["objects"]) listed.insert(part["name"]);
+  EXPECT_EQ(listed, names);
+  expect_same_parameters(schema("Backdrop")["oneOf"][1], listing["backdrop"]);
+  expect_same_parameters(schema("Material")["properties"]["oil_film"]["oneOf"][1],
+                         listing["oil_film"]);
 }
 
 TEST(OpenApi, AnswersHaveTheKeysOfTheirSchemas) {

@@ -221,6 +221,7 @@ TEST(EndpointsTest, WhatMayBeNamedIsListed) {
   Tested tested(0);
   EXPECT_GE(body_of(tested.call("GET", "/v1/absorbers"))["absorbers"].size(), 5u);
   EXPECT_THAT(body_of(tested.call("GET", "/v1/environments")).dump(), HasSubstr("forest"));
+  EXPECT_THAT(body_of(tested.call("GET", "/v1/objects")).dump(), HasSubstr("wedge"));
   EXPECT_THAT(body_of(tested.call("GET", "/v1/displays")).dump(), HasSubstr("sRGB"));
 }
 

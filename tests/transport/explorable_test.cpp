@@ -96,6 +96,23 @@ TEST(ExplorableFilm, HasThePictureAndTheErrorOfTheClearBody) {
                 1e-3 * expected_spread.pixels[i] + 1e-9);
 }
 
+TEST(ExplorableFilm, ThatIsStillBeingTracedDevelopsLikeOneThatIsKept) {
+  SceneSpec spec = sphere(0.3, 0.5);
+  spec.explorable = Explorable{37 / reference_mm};
+  const auto scene = build_scene(spec);
+  const Film film = explorable_render(sphere(0.3, 0.5), 8);
+  const ExplorableFilm kept = explorable_film(*scene, film);
+  const auto expect_alike = [](const Image& a, const Image& b) {
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+      ASSERT_NEAR(a.pixels[i], b.pixels[i], 1e-3 * b.pixels[i] + 1e-5) << i;
+  };
+  expect_alike(develop_shares(*scene, film), develop_explorable(kept, *scene));
+  for (const Absorption& a : five_absorbers())
+    expect_alike(develop_shares(*scene, film, a.absorber, a.sigma_a_peak),
+                 develop_explorable(kept, a.absorber, a.sigma_a_peak));
+}
+
 TEST(ExplorableFilm, SurvivesItsCheckpoint) {
   const Film film = explorable_render(sphere(0.3, 0.5), 8);
   const Film read = film_from_bytes(to_bytes(film));

@@ -1,0 +1,198 @@
+// The patterned plane behind a body: furnaces that it must not spoil, and plates on it with known
+// answers.
+
+#include "renderer/backdrop.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/truths.h"
+
+namespace translucube::test {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A map of radiance 1, of which the front half is seen.
+ImageEnvironment white_front() {
+  Image image(64, 32);
+  std::ranges::fill(image.pixels, 1.0f);
+  return ImageEnvironment(image, 0.3, 1, EnvironmentSide::front);
+}
+
+/// A backdrop of one value behind a body whose least z is `back`.
+Backdrop plain(BackdropKind kind, float value, double back, double distance) {
+  Backdrop backdrop;
+  backdrop.kind = kind;
+  backdrop.light = value;
+  backdrop.z = back - std::fmax(contact_gap, distance);
+  return backdrop;
+}
+
+struct Placed {
+  Shape shape;
+  double back;
+};
+std::vector<Placed> bodies() {
+  return {{Sphere{}, -1}, {make_box({0.7, 0.6, 0.1}), -0.1}, {Bowl(0.8), -1}};
+}
+
+void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
+  struct Setting {
+    double distance;
+    bool image;  ///< the environment: a map of radiance 1, or the same from everywhere
+  };
+  for (const BackdropKind kind : {BackdropKind::light_table, BackdropKind::print})
+    for (const auto& [distance, image] : {Setting{0, false}, Setting{0.3, true}})
+      for (const Placed& placed : bodies())
+        for (const Material& m :
+             {material(1.5, 0, 0), material(1.5, 0, 4), material(1.5, 0.3, 0),
+              material(1.5, 0.3, 4), material(1.5, 0, infinity), material(1.5, 0.3, infinity)}) {
+          Scene scene = body(placed.shape, m);
+          scene.backdrop = plain(kind, 1, placed.back, distance);
+          if (image) scene.environment = white_front();
+          scene.width = scene.height = size;
+          scene.camera = Camera({1.5, 2.2, 2.5}, {0, 0, 0}, {0, 1, 0}, 40, size, size);
+          const Film film = trace(scene, samples);
+          const Estimate e = image_mean(film);
+          SCOPED_TRACE(testing::Message()
+                       << "shape " << placed.shape.index() << " kind " << int(kind) << " at "
+                       << distance << " alpha " << m.coefficients.alpha << " sigma_s "
+                       << m.coefficients.sigma_s);
+          EXPECT_NEAR(e.mean, 1, 4 * e.standard_error + 1e-5);
+          EXPECT_LT(e.standard_error, largest_error);
+          EXPECT_EQ(film.counters.nan_samples, 0u);
+          EXPECT_LT(film.counters.truncated_energy / double(film.counters.camera_samples), 1e-4);
+        }
+}
+
+TEST(WhiteFurnace, BeforeAWhiteBackdropAllVanishes) { expect_furnaces(32, 12, 1.2e-2); }
+
+TEST(LongWhiteFurnace, BeforeAWhiteBackdropAllVanishes) { expect_furnaces(1024, 24, 1e-3); }
+
+/// A wide plate of thickness 1 on a backdrop, seen along its normal; the light comes from the
+/// backdrop alone or, on a print, from all around.
+Estimate plate_on(const Backdrop& backdrop, const Material& m, float sigma_a, float around,
+                  std::uint32_t samples) {
+  Scene scene = body(make_box({200, 200, 0.5}), m);
+  scene.environment = UniformEnvironment{{around, around, around}};
+  scene.lanes = {RgbLane{{sigma_a, sigma_a, sigma_a}}};
+  scene.backdrop = backdrop;
+  look_from_afar(scene, 0.1, 32);
+  return image_mean(trace(scene, samples));
+}
+
+TEST(Backdrop, IsSeenThroughGlassLessWhatItsFacesReflect) {
+  const double f = 0.04, e = std::exp(-0.5);
+  for (const double distance : {0.0, 3.0})
+    EXPECT_NEAR(plate_on(plain(BackdropKind::light_table, 2, -0.5, distance), material(1.5, 0, 0),
+                         0.5f, 0, 16)
+                    .mean,
+                2 * (1 - f) * (1 - f) * e / (1 - f * f * e * e), 1e-4);
+}
+
+TEST(Backdrop, ThroughAScatteringPlateIsVanDeHulstsTransmittance) {
+  // By reciprocity: what diffuse light sends to the normal is what the normal sends to all sides.
+  const Estimate t = plate_on(plain(BackdropKind::light_table, 1, -0.5, 0),
+                              material(1, 0, 90 * 0.02, 0.75), 10 * 0.02f, 0, 512);
+  EXPECT_NEAR(t.mean / 0.66096, 1, 5e-3) << t.standard_error;
+}
+
+/// Share of diffuse light that crosses a clear plate.
+double diffuse_transmittance_of_glass(double ior) {
+  double sum = 0;
+  constexpr int n = 2000;
+  for (int i = 0; i < n; ++i) {
+    const double mu = (i + 0.5) / n, f = fresnel(mu, ior);
+    sum += 2 * mu * (1 - f) / (1 + f) / n;
+  }
+  return sum;
+}
+
+TEST(Backdrop, UnderGlassAPrintIsDarkerByItsRoundTrips) {
+  // Radiance 1 all around: the plate reflects 1 - T, and sends down and up again what Kubelka 1948
+  // sums up: T rho T_d / (1 - rho (1 - T_d)).
+  const double f = 0.04, t = (1 - f) / (1 + f), t_d = diffuse_transmittance_of_glass(1.5);
+  for (const double rho : {0.2, 0.8}) {
+    const Estimate e =
+        plate_on(plain(BackdropKind::print, float(rho), -0.5, 0.5), material(1.5, 0, 0), 0, 1, 192);
+    EXPECT_NEAR(e.mean, 1 - t + t * rho * t_d / (1 - rho * (1 - t_d)), 4 * e.standard_error) << rho;
+    EXPECT_LT(e.standard_error, 1.6e-3);
+  }
+}
+
+TEST(Backdrop, ShowsItsPatternInItsPeriod) {
+  Backdrop backdrop;
+  backdrop.period = 2;
+  backdrop.dark = 0.25f;
+  const auto bright = [&](double x, double y) { return backdrop.value({x, y, 0}) == 1; };
+  EXPECT_TRUE(bright(0.5, -0.5) && bright(-0.5, -0.5) && bright(0.5, 0.5));
+  backdrop.pattern = Pattern::checker;
+  EXPECT_TRUE(bright(0.5, 0.5) && bright(-0.5, -0.5) && bright(2.5, 4.5));
+  EXPECT_FALSE(bright(0.5, -0.5) || bright(-0.5, 0.5) || bright(1.5, 0.5));
+  backdrop.pattern = Pattern::stripes;
+  EXPECT_TRUE(bright(0.5, 0.5) && bright(0.5, -7.7) && bright(-1.5, 0));
+  EXPECT_FALSE(bright(1.5, 0) || bright(-0.5, 0));
+  backdrop.pattern = Pattern::grid;
+  EXPECT_TRUE(bright(1, 1) && bright(0.11, 0.11) && bright(-0.11, 1));
+  EXPECT_FALSE(bright(0.09, 1) || bright(-0.09, 1) || bright(1, 2.05));
+  EXPECT_EQ(backdrop.value({0, 0, 0}), 0.25f);
+}
+
+/// Light that differs with the direction, the brightest part hidden.
+ImageEnvironment uneven_front() {
+  Image image(64, 32);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < 3; ++c)
+        image.pixels[3 * (std::size_t(y) * image.width + x) + c] =
+            x < 8                                 ? 50.0f
+            : x > 36 && x < 40 && y > 8 && y < 12 ? 30.0f
+                                                  : 0.1f * float(c + 1);
+  return ImageEnvironment(image, 0.2, 1, EnvironmentSide::front);
+}
+
+TEST(Backdrop, LookingForLightDoesNotChangeTheMean) {
+  // What finds the environment by connecting must know what the backdrop hides.
+  for (const BackdropKind kind : {BackdropKind::light_table, BackdropKind::print})
+    for (const Placed& placed : bodies())
+      for (const Material& m : {material(1.5, 0, 3), material(1.5, 0.4, 3), material(1.5, 0.4, 0),
+                                material(1.5, 0, infinity)}) {
+        Estimate estimates[2];
+        for (const bool looking : {false, true}) {
+          Scene scene = body(placed.shape, m, 5 + looking);
+          scene.environment = uneven_front();
+          scene.backdrop = plain(kind, 0.6f, placed.back, 0.2);
+          scene.backdrop->pattern = Pattern::checker;
+          scene.next_event_estimation = looking;
+          scene.width = scene.height = 16;
+          scene.camera = Camera({1.5, 1.2, 3}, {0, 0, 0}, {0, 1, 0}, 45, 16, 16);
+          estimates[looking] = image_mean(trace(scene, looking ? 64 : 256));
+        }
+        const auto& [without, with] = estimates;
+        const double error = std::hypot(without.standard_error, with.standard_error);
+        EXPECT_NEAR(with.mean, without.mean, 4 * error)
+            << placed.shape.index() << " kind " << int(kind) << " alpha " << m.coefficients.alpha
+            << " sigma_s " << m.coefficients.sigma_s;
+        EXPECT_LT(error / with.mean, 0.08);
+      }
+}
+
+TEST(Environment, ShowsAndFindsItsFrontAlone) {
+  const ImageEnvironment front = uneven_front();
+  Rng rng(3);
+  for (int i = 0; i < 2000; ++i) {
+    const EnvironmentSample light = front.sample({rng.uniform(), rng.uniform()});
+    // Cells across the border are drawn, what is behind it is dark.
+    EXPECT_GT(light.direction.z, -0.1);
+    if (light.direction.z < 0) {
+      EXPECT_EQ(light.value.radiance, Rgb{});
+    }
+    const Vec3 d = sample_isotropic(rng);
+    EXPECT_EQ(luminance(front.value_from(d).radiance) > 0, d.z >= 0);
+  }
+}
+
+}  // namespace
+}  // namespace translucube::test
