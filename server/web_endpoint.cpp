@@ -6,6 +6,7 @@
 
 #include "server/handlers.h"
 #include "server/http_negotiation.h"
+#include "server/ids.h"
 #include "server/web_files.h"
 
 namespace translucube::server {
@@ -21,7 +22,7 @@ HttpResponse web_response(const HttpRequest& request, std::string_view name) {
   const WebFile* file = find_web_file(name);
   if (file == nullptr)
     return problem_response({api::ProblemCode::not_found, "There is nothing at this path.", {}});
-  const std::string etag = entity_tag(std::string(file->bytes));
+  const std::string etag = '"' + content_hash(file->bytes) + '"';
   HttpResponse response{200, {}, std::string(web_content_type(name)), std::string(file->bytes)};
   if (etag_matches(request.header("if-none-match"), etag)) response = {304, {}, {}, {}};
   response.headers = {{"ETag", etag},

@@ -1,7 +1,7 @@
 // The page: one state, the controls that change it, the picture that follows it.
 
 import {AbsorberPicker} from './absorber.js';
-import {AxisSliders, BodyControls, ObjectControls, SceneControls} from './controls.js';
+import {AxisSliders, BodyControls, ObjectControls, PartControls, SceneControls} from './controls.js';
 import {CubeView} from './cube.js';
 import {byId, copyText, download} from './dom.js';
 import {digits, sigmaA} from './optics.js';
@@ -39,6 +39,8 @@ const sliders = new AxisSliders(byId('axes'), change);
 const absorber = new AbsorberPicker(byId('absorber'), change);
 const body = new BodyControls(byId('body'), change);
 const object = new ObjectControls(byId('object'), change);
+const oilFilm = new PartControls(byId('oil-film'), change, 'oil_film', '/material/oil_film');
+const backdrop = new PartControls(byId('backdrop'), change, 'backdrop', '/scene/backdrop');
 const scene = new SceneControls(byId('scene'), change);
 const sweep = new SweepView(service, {
   baseState: () => state,
@@ -77,6 +79,8 @@ function reflect(all = true) {
   absorber.set(state);
   body.set(state);
   object.set(state);
+  oilFilm.set(state);
+  backdrop.set(state);
   scene.set(state);
 }
 
@@ -188,16 +192,14 @@ function askToken() {
 // ---- begin
 
 async function loadLists() {
-  const list = (path, key) => service.json(path).then(answer => answer[key] ?? []);
-  // An older service may have no list of objects.
-  const [absorbers, environments, displays, objects] = await Promise.all([
-    list('/v1/absorbers', 'absorbers'), list('/v1/environments', 'environments'),
-    list('/v1/displays', 'displays'), list('/v1/objects', 'objects').catch(() => []),
-  ]);
+  const [{absorbers}, {environments}, {displays}, parts] = await Promise.all(
+      ['absorbers', 'environments', 'displays', 'objects'].map(name => service.json(`/v1/${name}`)));
   absorber.setList(absorbers);
   absorberNames = absorbers.map(({name}) => name);
   scene.setLists(environments, displays);
-  object.setList(objects);
+  object.setList(parts.objects);
+  oilFilm.setPart(parts.oil_film);
+  backdrop.setPart(parts.backdrop);
   reflect();
 }
 

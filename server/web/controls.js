@@ -115,6 +115,36 @@ export class BodyControls extends Panel {
   }
 }
 
+/// A control for a parameter as GET /v1/objects describes it; `change` gets its new value.
+function parameterField({name, type, unit, minimum, maximum, values, description, default: usual},
+    given, pointer, change) {
+  const value = given ?? usual ?? '';
+  const label = caption(name, unit);
+  if (type === 'vector') {
+    const vector = [...value];
+    const part = i => {
+      const input = numberInput(vector[i], {onchange: number => {
+        vector[i] = number;
+        change([...vector]);
+      }});
+      input.setAttribute('aria-label', `${label} ${'xyz'[i]}`);
+      input.dataset.pointer = `${pointer}/${name}/${i}`;
+      return input;
+    };
+    return element('div', {class: 'field', role: 'group', 'aria-label': label, title: description ?? ''},
+        element('span', {}, label), element('span', {class: 'vector'}, [0, 1, 2].map(part)));
+  }
+  const control = values ? select(values, value, change)
+      : type === 'number' ? numberInput(value, {min: minimum, max: maximum, onchange: change})
+      : type === 'boolean' ? element('input', {
+          type: 'checkbox', checked: Boolean(value),
+          onchange: event => change(event.target.checked),
+        })
+      : element('input', {type: 'text', value, onchange: event => change(event.target.value)});
+  if (description) control.title = description;
+  return field(label, control, {unit, pointer: `${pointer}/${name}`});
+}
+
 const sphere = {
   name: 'sphere', description: '',
   parameters: [{name: 'radius_mm', type: 'number', unit: 'mm', default: 20, minimum: 1e-6}],
@@ -129,7 +159,7 @@ export class ObjectControls extends Panel {
   }
 
   setList(objects) {
-    if (objects.length > 0) this.#objects = objects;
+    if (objects?.length > 0) this.#objects = objects;
     this.remake();
   }
 
@@ -137,35 +167,57 @@ export class ObjectControls extends Panel {
     const kind = this.#objects.find(({name}) => name === object.type);
     const names = this.#objects.map(({name}) => name);
     if (!kind) names.unshift(object.type);  // of a link; the service says what it thinks of it
-    const choose = select(names, object.type, name =>
-      this.tell({object: withDefaults(this.#objects.find(other => other.name === name))}, true));
+    const choose = select(names, object.type, type => {
+      const {parameters} = this.#objects.find(({name}) => name === type);
+      this.tell({object: {type, ...withDefaults(parameters)}}, true);
+    });
+    const change = name => value => this.tell({object: {...this.state.object, [name]: value}});
     return [
       field('Object', choose, {pointer: '/scene/object', hint: kind?.description}),
-      ...(kind?.parameters ?? []).map(parameter => this.#parameter(parameter, object)),
+      ...(kind?.parameters ?? []).map(parameter => parameterField(
+          parameter, object[parameter.name], '/scene/object', change(parameter.name))),
     ];
-  }
-
-  #parameter({name, type, unit, minimum, maximum, values, description, default: usual}, object) {
-    const value = object[name] ?? usual ?? '';
-    const change = given => this.tell({object: {...this.state.object, [name]: given}});
-    const control = values ? select(values, value, change)
-        : type === 'number' ? numberInput(value, {min: minimum, max: maximum, onchange: change})
-        : type === 'boolean' ? element('input', {
-            type: 'checkbox', checked: Boolean(value),
-            onchange: event => change(event.target.checked),
-          })
-        : element('input', {type: 'text', value, onchange: event => change(event.target.value)});
-    if (description) control.title = description;
-    return field(caption(name, unit), control, {unit, pointer: `/scene/object/${name}`});
   }
 }
 
-/// A new object of a kind: what must be given and has no default stays empty.
-export function withDefaults({name, parameters}) {
-  const object = {type: name};
-  for (const parameter of parameters)
-    if (parameter.default !== undefined) object[parameter.name] = parameter.default;
-  return object;
+/// A part of the scene that may be there or not, as GET /v1/objects describes it.
+export class PartControls extends Panel {
+  #part = null;
+  #key;
+  #pointer;
+
+  constructor(root, change, key, pointer) {
+    super(root, change, [key]);
+    this.#key = key;
+    this.#pointer = pointer;
+  }
+
+  setPart(part) {
+    this.#part = part ?? null;
+    this.remake();
+  }
+
+  build(state) {
+    const value = state[this.#key];
+    if (!this.#part) return [];
+    const {name, description, parameters} = this.#part;
+    const use = element('input', {
+      type: 'checkbox', checked: Boolean(value), title: description,
+      onchange: () => this.tell({[this.#key]: use.checked ? withDefaults(parameters) : false}, true),
+    });
+    const change = key => given => this.tell({[this.#key]: {...this.state[this.#key], [key]: given}});
+    return [
+      field(caption(name), use, {pointer: this.#pointer}),
+      ...(value ? parameters.map(parameter => parameterField(
+          parameter, value[parameter.name], this.#pointer, change(parameter.name))) : []),
+    ];
+  }
+}
+
+/// What must be given and has no default stays out.
+export function withDefaults(parameters) {
+  return Object.fromEntries(parameters.filter(parameter => parameter.default !== undefined)
+      .map(parameter => [parameter.name, parameter.default]));
 }
 
 /// "radius_mm" as people write it.

@@ -5,6 +5,7 @@ export const defaults = Object.freeze({
   absorber: 'red-glass',            // a name, {rgb} or {wavelengths_nm, values}
   ior: 1.5, anisotropy: 0, pigment: 0,  // pigment: absorption per scattering, 0: none
   object: {type: 'sphere', radius_mm: 20},
+  oil_film: false, backdrop: false,  // or what GET /v1/objects says of them
   environment: 'forest',            // a name, or {constant: [r, g, b]}
   rotation: 0, azimuth: 0, elevation: 0, distance: 90,  // degrees, degrees, degrees, mm
   view: '',                         // 'display/view' of /v1/displays, '': the first
@@ -12,7 +13,7 @@ export const defaults = Object.freeze({
 });
 
 /// The keys whose values go through the address as JSON where they are no text.
-const structured = new Set(['absorber', 'object', 'environment']);
+const structured = new Set(['absorber', 'object', 'environment', 'oil_film', 'backdrop']);
 const texts = new Set(['view']);
 
 function same(a, b) {
@@ -49,7 +50,7 @@ export function fromHash(hash) {
         // A broken link shows the default.
       }
     } else {
-      state[key] = structured.has(key) || texts.has(key) ? text : number(text);
+      state[key] = text === 'false' ? false : structured.has(key) || texts.has(key) ? text : number(text);
     }
   }
   for (const axis of ['absorption', 'roughness', 'scattering'])
@@ -76,7 +77,7 @@ function environmentOf(state) {
 
 /// The request of the picture as it is shown.
 export function pictureRequest(state, samples = state.samples) {
-  return {
+  const request = {
     material: {
       cube: {
         absorption: state.absorption, roughness: state.roughness, scattering: state.scattering,
@@ -94,6 +95,10 @@ export function pictureRequest(state, samples = state.samples) {
     image: {width: state.size, height: state.size},
     quality: {samples},
   };
+  // Older services know neither.
+  if (state.oil_film) request.material.oil_film = state.oil_film;
+  if (state.backdrop) request.scene.backdrop = state.backdrop;
+  return request;
 }
 
 /// The explorable request behind it: the same for every absorption and absorber, which are

@@ -44,6 +44,7 @@ class Run {
   films = [];
   controller = new AbortController();
   young = true;    // no picture yet
+  shown = '';      // what the last picture was of
 
   constructor(state, key, stages) {
     Object.assign(this, {state, key, stages});
@@ -68,7 +69,7 @@ export class Tracer {
   #wanted = false;      // the newest state has no run yet
   #run = null;
   #posting = false;
-  #developing = false;
+  #developing = null;   // the promise of the pictures that are being fetched
   #again = false;
   #traced = new Set();  // keys whose films the service has
 
@@ -153,7 +154,8 @@ export class Tracer {
         if (run.over) return;
       }
       this.#traced.add(run.key);
-      this.#on.progress(run.films.at(-1), true);
+      await this.#develop();
+      if (!run.over) this.#on.progress(run.films.at(-1), true);
     } catch (error) {
       this.#fail(run, error);
     }
@@ -195,12 +197,14 @@ export class Tracer {
   }
 
   /// Fetches the picture of the run from its best film; asked for meanwhile, once more after that.
-  async #develop() {
-    if (this.#developing) {
-      this.#again = true;
-      return;
-    }
-    this.#developing = true;
+  #develop() {
+    this.#again = true;
+    this.#developing ??= this.#developAll();
+    return this.#developing;
+  }
+
+  async #developAll() {
+    await null;  // #developing is set before it is cleared
     do {
       this.#again = false;
       const run = this.#run;
@@ -209,10 +213,13 @@ export class Tracer {
       const film = run.film(state);
       if (!film) continue;
       const {samples} = film;
+      const content = JSON.stringify([film.id, samples, film.done && !film.glance, developQuery(state)]);
+      if (content === run.shown) continue;
       try {
         const blob = await this.picture(film, state, film.glance ? 'jpeg' : 'png');  // quicker to make
         if (run.over) continue;
         this.#on.picture(blob, film, state, samples);
+        run.shown = content;
         run.young = false;
         this.#next();
       } catch (error) {
@@ -222,7 +229,7 @@ export class Tracer {
         this.#fail(run, error);
       }
     } while (this.#again);
-    this.#developing = false;
+    this.#developing = null;
   }
 
   /// A film through the state's absorber.

@@ -129,7 +129,3 @@ export function pictureHash(page) {
 export function pictureTimes(page) {
   return page.evaluate(() => performance.getEntriesByName('picture').map(({duration}) => duration));
 }
-
-export function median(values) {
-  return [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
-}

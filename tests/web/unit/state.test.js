@@ -7,7 +7,8 @@ import {
 
 const odd = {
   ...defaults, absorption: 0.123, roughness: 1, scattering: 0, absorber: {rgb: [0.2, 1, 0.5]}, ior: 1.33,
-  anisotropy: -0.4, pigment: 0.02, object: {type: 'box', width_mm: 3}, environment: {constant: [1, 1, 1]},
+  anisotropy: -0.4, pigment: 0.02, object: {type: 'box', width_mm: 3},
+  oil_film: {normal: [1, 0, 0], offset_mm: 0}, backdrop: {type: 'print', pattern: 'stripes'}, environment: {constant: [1, 1, 1]},
   rotation: 90, azimuth: -30, elevation: 20, distance: 50, view: 'sRGB/plain', size: 256, samples: 16,
 };
 
@@ -41,6 +42,8 @@ test('a request says all that is shown', () => {
   assert.deepEqual(request.material.pigment, {absorption_per_scattering: 0.02});
   assert.deepEqual(request.scene.environment, {constant: [1, 1, 1], rotation_deg: 90});
   assert.equal(pictureRequest(defaults).material.pigment, false);
+  assert.deepEqual(request.scene.backdrop, odd.backdrop);
+  assert.ok(!('backdrop' in pictureRequest(defaults).scene));
 });
 
 test('the camera stands on a sphere', () => {
