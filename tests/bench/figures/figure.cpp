@@ -25,8 +25,13 @@ std::string read_text(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+json read_index(const fs::path& folder) {
+  return json::parse(read_text(folder / "index.json")).at("figures");
+}
+
 json index_entry(const Figure& figure, const fs::path& folder) {
-  for (const json& entry : json::parse(read_text(folder / "index.json"))["figures"])
+  const json index = read_index(folder);
+  for (const json& entry : index)
     if (entry["name"] == figure.name) return entry;
   throw std::runtime_error("no figure " + figure.name);
 }
@@ -103,7 +108,8 @@ Pictures render_steps(const json& entry, const std::string& text, const Renderin
 
 std::vector<Figure> load_figures(const fs::path& folder) {
   std::vector<Figure> figures;
-  for (const json& entry : json::parse(read_text(folder / "index.json"))["figures"]) {
+  const json index = read_index(folder);
+  for (const json& entry : index) {
     Figure figure;
     figure.name = entry["name"];
     figure.title = entry["title"];
@@ -114,11 +120,11 @@ std::vector<Figure> load_figures(const fs::path& folder) {
     figure.cell_size = entry.value("cell_px", figure.cell_size);
     for (std::size_t axis = 0; axis < axis_keys.size(); ++axis) {
       const json given = entry.value(axis_keys[axis], json::object());
+      const json labels = given.value("labels", json::array()),
+                 steps = given.value("steps", json::array());
       figure.axes[axis].title = given.value("title", "");
-      for (const json& label : given.value("labels", json::array()))
-        figure.axes[axis].labels.push_back(label);
-      for (const json& step : given.value("steps", json::array()))
-        figure.axes[axis].labels.push_back(step["label"]);
+      for (const json& label : labels) figure.axes[axis].labels.push_back(label);
+      for (const json& step : steps) figure.axes[axis].labels.push_back(step["label"]);
       if (figure.axes[axis].labels.empty()) figure.axes[axis].labels.emplace_back();
     }
     figures.push_back(std::move(figure));
