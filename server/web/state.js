@@ -101,13 +101,19 @@ export function pictureRequest(state, samples = state.samples) {
   return request;
 }
 
-/// The explorable request behind it: the same for every absorption and absorber, which are
-/// developed from its one tracing.
+/// Whether other absorptions and absorbers can be developed from one tracing: not of pigments.
+export function isExplorable(state) {
+  return !state.pigment;
+}
+
+/// The request behind it, where it can be explorable: then it is the same for every absorption and
+/// absorber, which are developed from its one tracing.
 export function traceRequest(state, size, samples) {
   const request = pictureRequest(state, samples);
+  request.image = {width: size, height: size};
+  if (!isExplorable(state)) return request;
   request.material.cube.absorption = 0;
   delete request.material.absorber;
-  request.image = {width: size, height: size};
   request.explorable = true;
   return request;
 }

@@ -2,7 +2,7 @@
 // what it supersedes is removed, and nothing queues up: while a control moves, the next state waits
 // for the first picture of the one before, then the newest is taken.
 
-import {developQuery, displayQuery, pictureRequest, traceRequest} from './state.js';
+import {developQuery, displayQuery, isExplorable, pictureRequest, traceRequest} from './state.js';
 import {hasEnded, Problem} from './service.js';
 
 /// First a glance of one sample, which has no path lengths and so is there soonest; then a small
@@ -24,11 +24,12 @@ class Film {
   error = null;
   done = false;
 
-  constructor(id, stage) {
+  constructor(id, stage, state) {
     this.id = id;
     this.size = stage.size;
     this.total = stage.samples;
     this.glance = Boolean(stage.glance);
+    this.fixed = this.glance || !isExplorable(state);  // of one absorber
   }
   get worth() {
     return this.samples * this.size * this.size;
@@ -55,7 +56,7 @@ class Run {
   /// The best film that can show the state.
   film(state) {
     const fits = film => film.samples > 0 &&
-        (!film.glance || absorberKey(state) === absorberKey(this.state));
+        (!film.fixed || absorberKey(state) === absorberKey(this.state));
     return this.films.filter(fits)
         .reduce((best, film) => (best && best.worth > film.worth ? best : film), null);
   }
@@ -134,7 +135,7 @@ export class Tracer {
         ? {...pictureRequest(run.state, stage.samples), image: {width: stage.size, height: stage.size}}
         : traceRequest(run.state, stage.size, stage.samples);
     const status = await this.#service.post('/v1/renders', request);
-    const film = new Film(status.id, stage);
+    const film = new Film(status.id, stage, run.state);
     film.learn(status.state === 'succeeded' ? status.stats : status.progress);
     film.done = hasEnded(status.state);
     if (run.over) this.#service.remove(film.id);
@@ -234,7 +235,7 @@ export class Tracer {
 
   /// A film through the state's absorber.
   async picture(film, state, format) {
-    const fields = new URLSearchParams({format, ...(film.glance ? displayQuery(state) : developQuery(state))});
+    const fields = new URLSearchParams({format, ...(film.fixed ? displayQuery(state) : developQuery(state))});
     if (format === 'exr') {
       fields.delete('display');
       fields.delete('view');

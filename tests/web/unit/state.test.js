@@ -36,6 +36,12 @@ test('absorption and absorber do not change what is traced', () => {
   assert.notDeepEqual(traceRequest(defaults, 256, 16), traceRequest({...defaults, ior: 1.4}, 256, 16));
 });
 
+test('the absorption of pigments is traced', () => {
+  const request = traceRequest(odd, 64, 4);
+  assert.equal(request.explorable, undefined);
+  assert.deepEqual(request.material.absorber, odd.absorber);
+});
+
 test('a request says all that is shown', () => {
   const request = pictureRequest(odd);
   assert.deepEqual(request.material.absorber, {rgb: [0.2, 1, 0.5]});
