@@ -145,7 +145,8 @@ Image draw_cube(const Figure& figure, const Pictures& pictures, const SheetLook&
     const Dot at = project({-0.19, share(int(i), layers.labels.size()), 0});
     page.text(layers.labels[i], at.x, at.y, 0.5);
   }
-  const Dot x = project({0.5, -0.3, 0}), y = project({-0.1, 1.3, 0}), z = project({1.5, -0.05, 0.5});
+  const Dot x = project({0.5, -0.3, 0}), y = project({-0.1, 1.3, 0}),
+            z = project({1.5, -0.05, 0.5});
   page.text(columns.title, x.x, x.y, 0.5);
   page.text(layers.title, y.x, y.y, 0.2);
   page.text(rows.title, std::fmin(z.x, width - 70.0), z.y + 22, 0.5);
