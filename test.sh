@@ -1,18 +1,16 @@
 #!/usr/bin/env bash
 # Builds and runs the tests: all of them optimised, then the parts that threads, sockets, files and
-# hostile input touch under the sanitizers. The long statistical forms: ctest --preset release -L long
+# hostile input touch under the sanitizers, which is all but tests/transport. The long statistical
+# forms: ctest --preset release -L long
 # At the end a short run of the fuzzers; the long one: tests/fuzz/run.sh 600
 # Fails if any part fails, after running every part. PARTS="release asan tsan fuzz" chooses.
 set -euo pipefail
 cd "$(dirname "$0")"
 
-# Left out under the sanitizers: the statistical suites of the light transport. They take 5 to 20
-# times longer there, through the same code as the few short renders that stay in.
-statistical=${STATISTICAL:-'^(WhiteFurnace|MeanPathLength|Slab|Ball|CameraInside|Variance|RelativeError|Sampling|Limit|FurnaceGrid|Furnace/HardCases?|HardCases?|Pigment|Microsurface|LargeSteps|MeshDistance|Walk|Dipole[A-Za-z]*|ExplorableFilm|LanesOfSeveralAbsorptions|Haze|Clear(Plate|Slab)|ScatteringSlab|StandardErrors|Speed|Jumps|InfinitelyDenseBody|Connections|RoughConnections|MicrosurfaceBatch|Energy|Developed|DenseWhiteSlab|BlackBody|Bits|Colour|SingleScattering|PigmentSlab|Adding|Efficiency|Backdrop|WidePlate|OilFilm|Box)\.'}
 parts=${PARTS:-release asan tsan fuzz}
 
 began=$SECONDS
-bash .ci/install_packages.sh
+bash .ci/install_packages.sh .ci/build_packages.txt .ci/web_packages.txt
 export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 # What one clone has compiled serves the others.
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
@@ -54,12 +52,12 @@ fuzz() {
   summaries="== fuzz"$'\n'$(grep '^Done\|SUMMARY' "$logs/fuzz" || echo failed)$'\n'$summaries
 }
 
-tests="renderer_tests api_tests server_tests soak"
+sanitized="renderer_tests server_tests soak"
 for name in $parts; do
   case $name in
-    asan) part asan "$tests" -LE long -E "$statistical" ;;
-    # Parsing has no threads: its label stays with the other parts.
-    tsan) part tsan "$tests" -LE 'long|^api$' -E "$statistical" ;;
+    asan) part asan "$sanitized api_tests" -LE 'long|transport' -E _NOT_BUILT ;;
+    # Parsing has no threads.
+    tsan) part tsan "$sanitized" -LE 'long|transport|api' -E _NOT_BUILT ;;
     fuzz) fuzz ;;
     *) part "$name" all -LE long ;;
   esac

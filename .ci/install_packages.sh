@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Installs the Debian packages listed in the given files (default: build_packages.txt) that are
-# missing. Does nothing, and needs neither network nor root, where all are there.
+# missing. Does nothing, and needs neither network nor root, where all are there. A command behind a
+# package's name makes it superfluous where it is found.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 [ $# -gt 0 ] || set -- "$here/build_packages.txt"
 
 missing=()
-while read -r package; do
+while read -r package command; do
+  [ -z "$command" ] || ! command -v "$command" >/dev/null || continue
   status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
   [ "$status" = installed ] || missing+=("$package")
 done < <(grep -hv '^#' "$@")

@@ -178,4 +178,12 @@ Catalog load_catalog(const fs::path& service_json) {
   return catalog;
 }
 
+Catalog without_limits(Catalog catalog) {
+  constexpr double any = std::numeric_limits<double>::infinity();
+  constexpr auto most = std::numeric_limits<std::uint32_t>::max();
+  constexpr auto most_bytes = std::numeric_limits<std::uint64_t>::max();
+  catalog.limits = {most_bytes, most_bytes, most, any, any, most};
+  return catalog;
+}
+
 }  // namespace translucube::api

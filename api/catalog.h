@@ -48,4 +48,7 @@ struct Catalog {
 /// Throws ConfigError, which says the file, the pointer and the reason.
 Catalog load_catalog(const std::filesystem::path& service_json);
 
+/// For what was accepted before: it stays legal, whatever the limits are now.
+Catalog without_limits(Catalog catalog);
+
 }  // namespace translucube::api

@@ -24,7 +24,7 @@ using StateCounts = std::array<std::uint64_t, all_job_states.size()>;
 
 /// {"state", "counts": {"queued": 3, ...}}
 std::string sweep_event(JobState state, const StateCounts& counts);
-/// {"points": [numbers], "state", "counts"}: what became of the points of one traced image.
+/// {"points": [numbers], "state", "counts"}: what became of some points.
 std::string points_event(const std::vector<std::uint32_t>& points, JobState state,
                          const StateCounts& counts);
 

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>

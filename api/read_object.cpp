@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <initializer_list>
+#include <nlohmann/json.hpp>
 
 #include "api/objects.h"
 #include "api/request_reader.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "api/json_reader.h"
 #include "api/parse.h"
 #include "api/request_reader.h"
 #include "renderer/material_cube.h"
@@ -41,6 +42,28 @@ void set_absorption(MaterialRequest& material, double absorption) {
   }
 }
 
+/// A catalog's name, or JSON text of an absorber.
+AbsorberRequest read_asked_absorber(const std::string& text, const Catalog& catalog,
+                                    Faults& faults) {
+  AbsorberRequest absorber;
+  json value = text;
+  if (text.starts_with('{')) {
+    auto read = read_json(text, catalog.limits.body_bytes);
+    if (const auto* problem = std::get_if<Problem>(&read)) {
+      faults.add("?absorber", problem->detail);
+      return absorber;
+    }
+    auto& document = std::get<JsonDocument>(read);
+    if (!document.faults.empty()) {
+      faults.add("?absorber", document.faults.list().front().detail);
+      return absorber;
+    }
+    value = std::move(document.value);
+  }
+  read_absorber(value, "?absorber", catalog, absorber, faults);
+  return absorber;
+}
+
 }  // namespace
 
 std::optional<double> absorption_number(std::string_view text) {
@@ -54,10 +77,11 @@ std::optional<double> absorption_number(std::string_view text) {
 std::variant<Redeveloped, Problem> redevelop(std::string_view canonical_request,
                                              const Redevelopment& asked, const Catalog& catalog) {
   Problem problem{ProblemCode::invalid_request, "A query parameter is not valid.", {}};
-  if (asked.absorber && !catalog.absorbers.contains(*asked.absorber)) {
-    std::vector<std::string> names;
-    for (const auto& [name, absorber] : catalog.absorbers) names.push_back(name);
-    problem.faults.push_back({"?absorber", "must be one of " + name_list(names)});
+  AbsorberRequest absorber;
+  if (asked.absorber) {
+    Faults faults;
+    absorber = read_asked_absorber(*asked.absorber, catalog, faults);
+    problem.faults = faults.list();
   }
   if (asked.absorption && !(*asked.absorption >= 0 && *asked.absorption <= 1))
     problem.faults.push_back({"?absorption", "must be a number in [0, 1]"});
@@ -81,11 +105,17 @@ std::variant<Redeveloped, Problem> redevelop(std::string_view canonical_request,
   MaterialRequest& material = request.material;
   if (auto* coefficients = std::get_if<CoefficientsRequest>(&material.point))
     name_absorber(*coefficients, material.absorber);
-  if (asked.absorber) material.absorber = *asked.absorber;
+  if (asked.absorber) material.absorber = std::move(absorber);
   if (asked.absorption) set_absorption(material, *asked.absorption);
   document["material"] = json::parse(canonical_json(request))["material"];
   const Material made = scene_spec(request, catalog).material;
   return Redeveloped{{made.absorber, made.coefficients.sigma_a_peak}, document.dump()};
+}
+
+std::string with_samples(std::string_view canonical_request, std::uint32_t samples) {
+  json document = json::parse(canonical_request);
+  document["quality"] = {{"samples", samples}};
+  return document.dump();
 }
 
 }  // namespace translucube::api

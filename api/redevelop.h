@@ -2,6 +2,8 @@
 
 // Another absorber for a render that is done: what an explorable film is developed for.
 
+#include <compare>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,10 +17,12 @@ namespace translucube::api {
 
 /// What is left out stays as the render's request has it.
 struct Redevelopment {
-  std::optional<double> absorption{};     ///< the cube's, [0, 1]
-  std::optional<std::string> absorber{};  ///< a name of the catalog
+  std::optional<double> absorption{};  ///< the cube's, [0, 1]
+  /// A name of the catalog, or JSON text of an absorber as a request has it ({"rgb": ...}).
+  std::optional<std::string> absorber{};
 
   bool asked() const { return absorption || absorber; }
+  auto operator<=>(const Redevelopment&) const = default;
 };
 
 /// The whole text as a number in [0, 1], or nothing.
@@ -33,5 +37,8 @@ struct Redeveloped {
 /// again: its environment may have gone since.
 std::variant<Redeveloped, Problem> redevelop(std::string_view canonical_request,
                                              const Redevelopment& asked, const Catalog& catalog);
+
+/// The canonical request with another quality: this many samples.
+std::string with_samples(std::string_view canonical_request, std::uint32_t samples);
 
 }  // namespace translucube::api

@@ -3,7 +3,7 @@
 // The parts of a request, read over their defaults; shared by requests and by the defaults
 // themselves in config/service.json.
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "api/catalog.h"

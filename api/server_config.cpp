@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <nlohmann/json.hpp>
 
 #include "api/object_reader.h"
 
@@ -72,6 +73,7 @@ ServerConfig read_server(const json& value, const std::string& pointer, ServerCo
   integer("header_timeout_s", 1, 3600, server.header_timeout_s);
   integer("idle_timeout_s", 1, 3600, server.idle_timeout_s);
   integer("transfer_timeout_s", 1, 3600, server.transfer_timeout_s);
+  integer("drain_s", 0, 7, server.drain_s);
 
   if (const auto length = object.integer("queue_length", 1, 10'000'000))
     server.queue_length = *length;
@@ -79,6 +81,8 @@ ServerConfig read_server(const json& value, const std::string& pointer, ServerCo
     server.interactive_seconds = *seconds;
   if (const auto bytes = object.integer("artifact_bytes", 1 << 20, std::uint64_t{1} << 60))
     server.artifact_bytes = *bytes;
+  if (const auto bytes = object.integer("explorable_memory_bytes", 0, std::uint64_t{1} << 60))
+    server.explorable_memory_bytes = *bytes;
 
   if (const auto format = object.string("log_format")) {
     if (*format == "json")

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,10 +34,13 @@ struct ServerConfig {
   int header_timeout_s = 10;
   int idle_timeout_s = 60;
   int transfer_timeout_s = 20;
+  int drain_s = 5;  ///< for passes under way, once the service is told to end
 
   std::uint64_t queue_length = 20'000;  ///< renders and images of sweeps
   double interactive_seconds = 10;  ///< a render that is traced for longer waits with the sweeps
   std::uint64_t artifact_bytes = std::uint64_t{20} << 30;  ///< of finished pictures on the disk
+
+  std::uint64_t explorable_memory_bytes = std::uint64_t{256} << 20;  ///< of films kept in memory
 
   LogFormat log_format = LogFormat::logfmt;
 };

@@ -20,8 +20,8 @@ const BallExit* ball_exits() { return translucube_ball_exits; }
 BallCrossing cross_ball(int level, Rng& rng) {
   assert(level >= 0 && level < ball_levels);
   const int table = std::min(level, tabulated_levels - 1);
-  BallCrossing crossing = cross_ball(
-      {ball_exits() + std::size_t(table) * exits_per_ball, exits_per_ball}, rng);
+  BallCrossing crossing =
+      cross_ball({ball_exits() + std::size_t(table) * exits_per_ball, exits_per_ball}, rng);
   crossing.length *= mean_ball_length(level) / mean_ball_length(table);
   return crossing;
 }

@@ -1,15 +1,9 @@
 #include "renderer/explorable.h"
 
 #include <algorithm>
-#include <bit>
-#include <charconv>
-#include <map>
-#include <sstream>
 #include <stdexcept>
-#include <thread>
 
 #include "renderer/half.h"
-#include "renderer/image_io.h"
 #include "renderer/scene_data.h"
 
 namespace translucube {
@@ -79,107 +73,6 @@ BinWeights BinSpread::operator()(double length) const {
   return spread;
 }
 
-// ---- developing
-
-namespace {
-
-using Operator = std::array<float, 9>;  ///< row-major
-
-/// What a lane does to light of each bin, the bin's scale included.
-std::vector<Operator> operators(const ExplorableFilm& film, const Lane& lane) {
-  std::vector<Operator> all(static_cast<std::size_t>(film.bins.count()));
-  for (int bin = 0; bin < film.bins.count(); ++bin)
-    for (int c = 0; c < 3; ++c) {
-      const Rgb unit{c == 0 ? 1.0f : 0.0f, c == 1 ? 1.0f : 0.0f, c == 2 ? 1.0f : 0.0f};
-      const Rgb column =
-          std::visit([&](const auto& l) { return l.apply(unit, film.bins.length(bin)); }, lane);
-      all[bin][c] = column.r * film.scales[bin];
-      all[bin][3 + c] = column.g * film.scales[bin];
-      all[bin][6 + c] = column.b * film.scales[bin];
-    }
-  return all;
-}
-
-/// Pixels developed at once: their sums and one bin's halves stay in the L1 cache.
-constexpr std::size_t block = 1024;
-
-/// One source for every instruction set: loops that the compiler turns into vectors. Without fused
-/// multiply-add the bits are the same on all of them.
-[[gnu::always_inline]] inline void develop_block(const ExplorableFilm& film,
-                                                 const std::vector<Operator>& all,
-                                                 std::size_t begin, std::size_t count, float* out) {
-  alignas(64) float sum[3][block] = {};
-  const std::size_t pixels = std::size_t(film.width) * film.height;
-  const std::uint16_t* r = film.halves.data() + begin;
-  for (const Operator& m : all) {
-    const std::uint16_t *g = r + pixels, *b = g + pixels;
-    for (std::size_t i = 0; i < count; ++i) {
-      const float hr = half_to_float(r[i]), hg = half_to_float(g[i]), hb = half_to_float(b[i]);
-      sum[0][i] += m[0] * hr + m[1] * hg + m[2] * hb;
-      sum[1][i] += m[3] * hr + m[4] * hg + m[5] * hb;
-      sum[2][i] += m[6] * hr + m[7] * hg + m[8] * hb;
-    }
-    r = b + pixels;
-  }
-  for (std::size_t i = 0; i < count; ++i)
-    for (int c = 0; c < 3; ++c) out[3 * (begin + i) + c] = sum[c][i];
-}
-
-using BlockFunction = void (*)(const ExplorableFilm&, const std::vector<Operator>&, std::size_t,
-                               std::size_t, float*);
-
-void develop_block_anywhere(const ExplorableFilm& film, const std::vector<Operator>& all,
-                            std::size_t begin, std::size_t count, float* out) {
-  develop_block(film, all, begin, count, out);
-}
-
-#if defined(__x86_64__)
-[[gnu::target("avx2")]] void develop_block_avx2(const ExplorableFilm& film,
-                                                const std::vector<Operator>& all, std::size_t begin,
-                                                std::size_t count, float* out) {
-  develop_block(film, all, begin, count, out);
-}
-#endif
-
-BlockFunction fastest_block_function() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return develop_block_avx2;
-#endif
-  return develop_block_anywhere;
-}
-
-}  // namespace
-
-Image develop_explorable(const ExplorableFilm& film, const Lane& lane, int threads) {
-  Image image(film.width, film.height);
-  const std::vector<Operator> all = operators(film, lane);
-  const std::size_t pixels = image.pixels.size() / 3;
-  const BlockFunction develop_some = fastest_block_function();
-  const auto work = [&](std::size_t begin, std::size_t end) {
-    for (; begin < end; begin += block)
-      develop_some(film, all, begin, std::min(block, end - begin), image.pixels.data());
-  };
-  // Not worth a thread below a few hundred thousand values.
-  const std::size_t useful = std::max<std::size_t>(1, pixels / (16 * block));
-  const std::size_t workers = std::min<std::size_t>(
-      useful, threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency()));
-  const std::size_t share = (pixels + workers - 1) / workers;
-  std::vector<std::jthread> helpers;
-  for (std::size_t i = 1; i < workers; ++i)
-    helpers.emplace_back(work, std::min(i * share, pixels), std::min((i + 1) * share, pixels));
-  work(0, std::min(share, pixels));
-  return image;
-}
-
-Image develop_explorable(const ExplorableFilm& film, const Absorber& absorber, double sigma_a_peak,
-                         int threads) {
-  return develop_explorable(film, make_lane(absorber, sigma_a_peak * film.unit_mm), threads);
-}
-
-Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int threads) {
-  return develop_explorable(film, scene.lanes.front(), threads);
-}
-
 ExplorableFilm explorable_film(const Scene& scene, const Film& film) {
   ExplorableFilm result;
   result.width = film.width;
@@ -208,89 +101,6 @@ ExplorableFilm explorable_film(const Scene& scene, const Film& film) {
             float_to_half(sum[3 * i + c] * to_mean * scale);
   }
   return result;
-}
-
-// ---- storage
-
-namespace {
-
-constexpr const char* bins_attribute = "translucube:bins";  ///< "first last nodes"
-constexpr const char* unit_attribute = "translucube:unit_mm";
-constexpr const char* lengths_attribute = "translucube:lengths_mm";
-constexpr const char* scales_attribute = "translucube:scales";
-constexpr const char* request_attribute = "translucube:request";
-
-/// Numbers as text, shortest form that reads back to the same value.
-template <class... Numbers>
-std::string numbers_text(const Numbers&... numbers) {
-  std::string text;
-  const auto add = [&](auto number) {
-    char digits[32];
-    const auto end = std::to_chars(digits, digits + sizeof digits, number).ptr;
-    text.append(text.empty() ? "" : " ").append(digits, end);
-  };
-  (add(numbers), ...);
-  return text;
-}
-
-/// Layers are named so that their order is the alphabet's, which EXR files keep.
-std::string channel_name(int bin, int channel) {
-  const std::string digits = std::to_string(1000 + bin).substr(1);
-  return "bin" + digits + '.' + "RGB"[channel];
-}
-
-std::string attribute(const HalfImage& image, const char* name, const std::filesystem::path& file) {
-  const auto found = image.attributes.find(name);
-  if (found == image.attributes.end())
-    throw ImageError(file.string() + ": is not an explorable film (no " + name + ")");
-  return found->second;
-}
-
-}  // namespace
-
-void write_explorable(const std::filesystem::path& file, const ExplorableFilm& film,
-                      const std::string& canonical_request) {
-  HalfImage image;
-  image.width = film.width;
-  image.height = film.height;
-  std::string lengths, scales;
-  for (int bin = 0; bin < film.bins.count(); ++bin) {
-    for (int c = 0; c < 3; ++c) image.channels.push_back(channel_name(bin, c));
-    const double length = bin == 1 ? 0 : film.bins.length(bin) * film.unit_mm;
-    lengths += (bin > 0 ? " " : "") + numbers_text(length);
-    scales += (bin > 0 ? " " : "") + numbers_text(film.scales[bin]);
-  }
-  image.attributes = {
-      {bins_attribute, numbers_text(film.bins.first, film.bins.last, film.bins.nodes)},
-      {unit_attribute, numbers_text(film.unit_mm)},
-      {lengths_attribute, lengths},
-      {scales_attribute, scales},
-      {request_attribute, canonical_request}};
-  write_half_image(file, image, film.halves);
-}
-
-StoredExplorable read_explorable(const std::filesystem::path& file) {
-  StoredExplorable stored;
-  ExplorableFilm& film = stored.film;
-  HalfImage image = read_half_image(file, film.halves);
-  film.width = image.width;
-  film.height = image.height;
-  std::istringstream bins(attribute(image, bins_attribute, file)),
-      unit(attribute(image, unit_attribute, file)),
-      scales(attribute(image, scales_attribute, file));
-  bins >> film.bins.first >> film.bins.last >> film.bins.nodes;
-  unit >> film.unit_mm;
-  for (float scale; scales >> scale;) film.scales.push_back(scale);
-  stored.request = attribute(image, request_attribute, file);
-  const bool sound = bins && unit && film.bins.first > 0 && film.bins.last > film.bins.first &&
-                     film.bins.nodes >= 4 && film.bins.nodes < 900 && film.unit_mm > 0 &&
-                     std::ssize(film.scales) == film.bins.count() &&
-                     std::ssize(image.channels) == std::ptrdiff_t{3} * film.bins.count();
-  bool named = sound;
-  for (int i = 0; named && i < std::ssize(image.channels); ++i)
-    named = image.channels[i] == channel_name(i / 3, i % 3);
-  if (!named) throw ImageError(file.string() + ": is not a whole explorable film");
-  return stored;
 }
 
 }  // namespace translucube

@@ -95,6 +95,12 @@ Image develop_explorable(const ExplorableFilm& film, const Absorber& absorber, d
 /// The same for the material of the film's own scene.
 Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int threads = 0);
 
+/// A film that is still being traced, as the float sums stand: no halves are made of it.
+Image develop_shares(const Scene& scene, const Film& film, const Absorber& absorber,
+                     double sigma_a_peak);
+/// The same for the material of its own scene.
+Image develop_shares(const Scene& scene, const Film& film);
+
 /// Compressed multi-channel EXR of half floats: a layer of R, G and B for each bin; the lengths,
 /// the scales, the unit and the canonical request in its header. Throw ImageError.
 void write_explorable(const std::filesystem::path& file, const ExplorableFilm& film,

@@ -77,8 +77,9 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
   std::atomic<double> cpu_seconds{0};
   const auto work = [&] {
     const double start = thread_cpu_seconds();
+    Tile tile;  // its memory serves one tile after the other: an explorable one has much
     for (int i = next++; i < columns * rows && !stop.stop_requested(); i = next++) {
-      Tile tile;
+      tile.counters = {};
       tile.index = static_cast<std::uint32_t>(i);
       tile.x0 = i % columns * tile_size;
       tile.y0 = i / columns * tile_size;

@@ -59,8 +59,8 @@ bool SphereConnector::reaches_far(const SphereExits& exits) const {
 
 void SphereConnector::connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths) {
   collector_.counters().connections += vertices.size;
-  // The far side begins this far from everywhere.
-  const bool far = medium_.sigma_s * SphereExits(ior_, {0, 0, 1}, 0).shortest_far() < longest_way;
+  // The shortest of all ways out on the far branch begins at the radius 1 / ior.
+  const bool far = medium_.sigma_s * std::sqrt(1 - 1 / (ior_ * ior_)) < longest_way;
   for (std::size_t i = 0; i < vertices.size; ++i) {
     const Path& path = paths[vertices.slot[i]];
     const auto weight = static_cast<float>(path.weight);

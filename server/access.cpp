@@ -48,6 +48,9 @@ bool is_our_origin(const AccessPolicy& policy, const HttpRequest& request) {
   return lower(request.header("sec-fetch-site")) != "cross-site";
 }
 
+/// The web explorer, which a browser asks for without a token. It holds nothing but itself.
+bool is_page(std::string_view path) { return path == "/" || path.starts_with("/web/"); }
+
 /// The token of `Authorization: Bearer token`; the scheme has no case (RFC 9110, 11.1).
 std::string_view bearer_token(const HttpRequest& request) {
   constexpr std::string_view scheme = "bearer ";
@@ -88,7 +91,7 @@ std::variant<Admitted, Problem> admit(const AccessPolicy& policy, const HttpRequ
   if (!changes_nothing && !is_our_origin(policy, request))
     return Problem{
         ProblemCode::forbidden, "A page of another origin asks; server.origins can allow it.", {}};
-  if (policy.tokens.empty()) return Admitted{};
+  if (policy.tokens.empty() || (changes_nothing && is_page(request.path))) return Admitted{};
   const std::string_view token = bearer_token(request);
   const std::string_view name = token.empty() ? token : name_of(policy.tokens, token);
   if (name.empty())

@@ -90,6 +90,10 @@ StoreGauges gauges_of(const QueueGauges& queue) {
 int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   // An arena for each of a hundred threads would keep what any of them once needed.
   ::mallopt(M_ARENA_MAX, 4);
+  // What a film or the state of a large sweep took goes back to the system. Left to itself, the
+  // library raises both as soon as it has met one.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  ::mallopt(M_TRIM_THRESHOLD, 1 << 20);
   prepare_image_codecs();
   const api::Catalog catalog = configured(options);
   set_up_log(catalog.server.log_format);
@@ -118,7 +122,7 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   signal.wait(0);
   spdlog::info("signal {}: shutting down", signal.load());
   const Watchdog watchdog(longest_drain);
-  service.shut_down();
+  service.shut_down(std::chrono::seconds(catalog.server.drain_s));
   server.stop();
   http.join();
   return 0;

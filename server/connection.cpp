@@ -65,6 +65,7 @@ bool Connection::drop_received() {
 
 void Connection::end_request() {
   transfer_.reset();
+  unsent_.clear();
   sent_ = moved_ = 0;
   waited_ = {};
   crowded_ = false;
@@ -98,7 +99,7 @@ ssize_t Connection::read(char* out, std::size_t size) {
     }
     if (got == 0) return 0;
     if (errno != EAGAIN && errno != EWOULDBLOCK) return -1;
-    if (!wait(POLLIN)) return -1;
+    if (!flush() || !wait(POLLIN)) return -1;
   }
   size = std::min(size, buffer_.size() - read_);
   std::memcpy(out, buffer_.data() + read_, size);
@@ -107,6 +108,30 @@ ssize_t Connection::read(char* out, std::size_t size) {
 }
 
 ssize_t Connection::write(const char* bytes, std::size_t size) {
+  if (unsent_.size() + size > chunk) {
+    if (!flush()) return -1;
+    return send(bytes, size);
+  }
+  unsent_.append(bytes, size);
+  sent_ += size;
+  return static_cast<ssize_t>(size);
+}
+
+bool Connection::flush() {
+  std::size_t done = 0;
+  const std::uint64_t sent = sent_;
+  while (done < unsent_.size()) {
+    const ssize_t wrote = send(unsent_.data() + done, unsent_.size() - done);
+    if (wrote < 0) break;
+    done += static_cast<std::size_t>(wrote);
+  }
+  const bool all = done == unsent_.size();
+  sent_ = sent;
+  unsent_.clear();
+  return all;
+}
+
+ssize_t Connection::send(const char* bytes, std::size_t size) {
   for (;;) {
     const ssize_t wrote = ::send(socket_.get(), bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (wrote >= 0) {

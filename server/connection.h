@@ -33,6 +33,7 @@ class Connection {
   Connection(FileDescriptor socket, Places::Place place, const ConnectionRules& rules);
 
   enum class Head { missing, begun, whole, too_large, closed };
+  Head head() const;  ///< of the next request, in what was taken in
   /// Takes in what has come, without waiting, up to the end of a request's headers.
   Head receive_head();
   /// Drops some of what has come, without waiting. False once the client has closed.
@@ -41,7 +42,9 @@ class Connection {
   /// Up to `size` bytes, at least one; 0 at the end of the stream, -1 on failure or when the
   /// client was waited for too long.
   ssize_t read(char* buffer, std::size_t size);
+  /// Small pieces are gathered; `flush` sends them, as does a read that must wait for the client.
   ssize_t write(const char* bytes, std::size_t size);
+  bool flush();
   /// False once the client has closed its side or the connection is broken.
   bool client_listens() const;
   /// The last failure was for want of a place for slow clients.
@@ -62,14 +65,15 @@ class Connection {
 
  private:
   bool wait(short events);
-  Head head() const;
   ssize_t fill();
+  ssize_t send(const char* bytes, std::size_t size);
 
   FileDescriptor socket_;
   Places::Place place_, transfer_;
   ConnectionRules rules_;
   std::string buffer_;  ///< received, from `read_` on not yet read
   std::size_t read_ = 0;
+  std::string unsent_;
   std::uint64_t sent_ = 0, moved_ = 0;
   std::chrono::nanoseconds waited_{0};
   bool crowded_ = false, ends_ = false;

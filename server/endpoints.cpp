@@ -45,15 +45,19 @@ HttpResponse readyz(Endpoints& endpoints, const HttpRequest&, const PathIds&) {
   return json_response(200, R"({"status":"ready"})");
 }
 
+using Parameters = std::array<std::string_view, 7>;
+
 struct Route {
-  std::string_view method, pattern;  ///< "{id}" and "{point}" stand for one segment each
+  std::string_view method, pattern;  ///< "{id}", "{point}" and "{file}" stand for a segment each
   HttpResponse (*handle)(Endpoints&, const HttpRequest&, const PathIds&);
-  std::array<std::string_view, 6> query{};  ///< the parameters it knows
+  Parameters query{};  ///< those it knows
 };
 
-constexpr std::array<std::string_view, 6> list_parameters{"cursor", "limit", "status"};
-constexpr std::array<std::string_view, 6> image_parameters{"format",     "display",    "view",
-                                                           "colorspace", "absorption", "absorber"};
+constexpr Parameters list_parameters{"cursor", "limit", "status"};
+constexpr Parameters image_parameters{"format",     "display",  "view",   "colorspace",
+                                      "absorption", "absorber", "partial"};
+constexpr Parameters point_parameters{"format",     "display",    "view",
+                                      "colorspace", "absorption", "absorber"};
 
 constexpr std::array routes{
     Route{"POST", "/v1/renders", post_render},
@@ -67,7 +71,7 @@ constexpr std::array routes{
     Route{"GET", "/v1/sweeps", list_sweeps, list_parameters},
     Route{"GET", "/v1/sweeps/{id}", get_sweep, {"wait"}},
     Route{"DELETE", "/v1/sweeps/{id}", delete_sweep},
-    Route{"GET", "/v1/sweeps/{id}/points/{point}/image", get_point_image, image_parameters},
+    Route{"GET", "/v1/sweeps/{id}/points/{point}/image", get_point_image, point_parameters},
     Route{"GET", "/v1/sweeps/{id}/sheet", get_sheet, {"format", "display", "view", "colorspace"}},
     Route{"GET", "/v1/sweeps/{id}/events", get_sweep_events},
     Route{"POST", "/v1/sweeps/{id}/cancel", cancel_sweep},
@@ -75,6 +79,8 @@ constexpr std::array routes{
     Route{"GET", "/v1/environments", get_environments},
     Route{"GET", "/v1/objects", get_objects},
     Route{"GET", "/v1/displays", get_displays},
+    Route{"GET", "/", get_page},
+    Route{"GET", "/web/{file}", get_web_file},
     Route{"GET", "/livez", livez},
     Route{"GET", "/readyz", readyz},
     Route{"GET", "/openapi.json", get_openapi},
@@ -96,9 +102,9 @@ std::optional<PathIds> match(std::string_view pattern, std::string_view path) {
   path.remove_prefix(1);
   while (!pattern.empty() || !path.empty()) {
     const std::string_view expected = take_segment(pattern), given = take_segment(path);
-    std::string* id = expected == "{id}" ? &ids.id : expected == "{point}" ? &ids.point : nullptr;
-    if (id != nullptr && !given.empty())
-      *id = given;
+    std::string* place = ids.place(expected);
+    if (place != nullptr && !given.empty())
+      *place = given;
     else if (expected != given)
       return std::nullopt;
   }

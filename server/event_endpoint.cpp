@@ -19,18 +19,28 @@ constexpr std::chrono::seconds longest_block(1);
 constexpr const char* reconnection_time = "retry: 2000\n\n";
 
 using EventsAfter = std::function<Result<JobService::Events>(std::uint64_t)>;
+/// Samples of what there is to see before it is stored; 0: nothing.
+using SamplesToSee = std::function<std::uint32_t()>;
 
 std::string text_of(const Event& event) {
   return "id: " + std::to_string(event.number) + "\nevent: " + event.type +
          "\ndata: " + event.data + "\n\n";
 }
 
+/// There is a better picture than the last time. It is told as soon as it is there, before the pass
+/// is on the disk, and is no event of the store: it has no id and is not replayed.
+std::string preview_text(std::uint32_t samples) {
+  return "event: preview\ndata: {\"samples\":" + std::to_string(samples) + "}\n\n";
+}
+
 struct Stream {
   JobService& service;
   EventsAfter events_after;
+  SamplesToSee samples_to_see;
   Place place;
   std::uint64_t last;
   bool ended = false, begun = false;
+  std::uint32_t samples = 0;
   steady_clock::time_point said = steady_clock::now();
 
   std::optional<std::string> next() {
@@ -46,6 +56,10 @@ struct Stream {
         text += text_of(event);
         last = event.number;
       }
+      if (const std::uint32_t now = samples_to_see(); now > samples) {
+        text += preview_text(now);
+        samples = now;
+      }
       ended = found->ended && found->events.empty();
       return ended || !text.empty();
     });
@@ -57,7 +71,8 @@ struct Stream {
   }
 };
 
-HttpResponse stream_of(Endpoints& endpoints, const HttpRequest& request, EventsAfter events_after) {
+HttpResponse stream_of(Endpoints& endpoints, const HttpRequest& request, EventsAfter events_after,
+                       SamplesToSee samples_to_see) {
   const std::uint64_t last = last_event_id(request.header("last-event-id"));
   const auto first = events_after(last);
   if (const auto* problem = std::get_if<Problem>(&first)) return problem_response(*problem);
@@ -68,6 +83,7 @@ HttpResponse stream_of(Endpoints& endpoints, const HttpRequest& request, EventsA
   const auto stream = std::shared_ptr<Stream>(
       new Stream{endpoints.service,
                  std::move(events_after),
+                 std::move(samples_to_see),
                  {endpoints.streams, endpoints.catalog.server.event_streams},
                  last});
   if (!stream->place.got())
@@ -83,16 +99,20 @@ HttpResponse stream_of(Endpoints& endpoints, const HttpRequest& request, EventsA
 
 HttpResponse get_render_events(Endpoints& endpoints, const HttpRequest& request,
                                const PathIds& ids) {
-  return stream_of(endpoints, request, [&service = endpoints.service, id = ids.id](auto after) {
-    return service.events_of_render(id, after);
-  });
+  JobService& service = endpoints.service;
+  return stream_of(
+      endpoints, request,
+      [&service, id = ids.id](auto after) { return service.events_of_render(id, after); },
+      [&service, id = ids.id] { return service.samples_to_see(id); });
 }
 
 HttpResponse get_sweep_events(Endpoints& endpoints, const HttpRequest& request,
                               const PathIds& ids) {
-  return stream_of(endpoints, request, [&service = endpoints.service, id = ids.id](auto after) {
-    return service.events_of_sweep(id, after);
-  });
+  JobService& service = endpoints.service;
+  return stream_of(
+      endpoints, request,
+      [&service, id = ids.id](auto after) { return service.events_of_sweep(id, after); },
+      [] { return 0; });
 }
 
 }  // namespace translucube::server

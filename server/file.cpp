@@ -1,6 +1,7 @@
 #include "server/file.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -36,6 +37,11 @@ void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
   }
 }
 
+std::string version_of(const struct stat& status) {
+  return std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec) +
+         '.' + std::to_string(status.st_size);
+}
+
 /// Removes a file when it goes out of scope, if it is still there.
 struct Removal {
   std::filesystem::path path;
@@ -57,19 +63,36 @@ FileDescriptor& FileDescriptor::operator=(FileDescriptor&& other) noexcept {
 }
 
 std::shared_ptr<const OpenFile> OpenFile::open(const std::filesystem::path& path) {
-  auto file = std::make_shared<OpenFile>();
-  file->fd_ = FileDescriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
-  if (!file->fd_) {
+  FileDescriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  if (!fd) {
     if (errno == ENOENT || errno == ENOTDIR) return nullptr;
     fail(path, "open", errno);
   }
+  return opened(std::move(fd), path.filename().string());
+}
+
+std::shared_ptr<const OpenFile> OpenFile::in_memory(
+    const std::function<void(const std::filesystem::path&)>& writer) {
+  FileDescriptor fd(::memfd_create("translucube", MFD_CLOEXEC));
+  if (!fd) fail("a file in memory", "create", errno);
+  writer("/proc/self/fd/" + std::to_string(fd.get()));
+  return opened(std::move(fd), "a file in memory");
+}
+
+std::shared_ptr<const OpenFile> OpenFile::opened(FileDescriptor fd, std::string name) {
   struct stat status {};
-  if (::fstat(file->fd_.get(), &status) != 0) fail(path, "read", errno);
+  if (::fstat(fd.get(), &status) != 0) fail(name, "read", errno);
+  auto file = std::make_shared<OpenFile>();
+  file->fd_ = std::move(fd);
   file->size_ = static_cast<std::uint64_t>(status.st_size);
-  file->version_ = std::to_string(status.st_mtim.tv_sec) + '.' +
-                   std::to_string(status.st_mtim.tv_nsec) + '.' + std::to_string(status.st_size);
-  file->name_ = path.filename().string();
+  file->version_ = version_of(status);
+  file->name_ = std::move(name);
   return file;
+}
+
+bool OpenFile::is_as_opened() const {
+  struct stat status {};
+  return ::fstat(fd_.get(), &status) == 0 && status.st_nlink > 0 && version_of(status) == version_;
 }
 
 void OpenFile::read(std::uint64_t offset, char* buffer, std::size_t size) const {

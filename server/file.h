@@ -38,6 +38,10 @@ class OpenFile {
  public:
   /// Empty if there is no such file. Throws FileError.
   static std::shared_ptr<const OpenFile> open(const std::filesystem::path& path);
+  /// A file in memory, without a name, gone with the value. `writer` fills it under a path that
+  /// holds while it does; its exceptions pass. Throws FileError.
+  static std::shared_ptr<const OpenFile> in_memory(
+      const std::function<void(const std::filesystem::path&)>& writer);
 
   std::uint64_t size() const { return size_; }
   /// Changes whenever the file is written anew: modification time and size, for an ETag.
@@ -45,8 +49,12 @@ class OpenFile {
   /// Fills the buffer from the offset on. Throws FileError if the file has not that many bytes.
   void read(std::uint64_t offset, char* buffer, std::size_t size) const;
   std::string read_all() const;
+  /// False once it was written, cut, replaced or removed.
+  bool is_as_opened() const;
 
  private:
+  static std::shared_ptr<const OpenFile> opened(FileDescriptor fd, std::string name);
+
   FileDescriptor fd_;
   std::uint64_t size_ = 0;
   std::string version_;

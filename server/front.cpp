@@ -82,7 +82,7 @@ void Front::done(const RequestRecord& record) const {
   LogFields fields{{"id", record.id},
                    {"method", record.method},
                    {"path", record.path},
-                   {"route", std::string(route)},
+                   {"route", route},
                    {"status", std::int64_t(record.status)},
                    {"ms", record.seconds * 1e3},
                    {"bytes", static_cast<std::int64_t>(record.bytes)}};

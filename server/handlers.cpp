@@ -29,12 +29,15 @@ HttpResponse json_response(int status, std::string body) {
   return {status, {}, "application/json", std::move(body)};
 }
 
-std::string entity_tag(const std::string& body) { return '"' + content_hash(body) + '"'; }
+HttpResponse tagged_json(const HttpRequest& request, const std::string& body) {
+  return tagged_json(request, body, '"' + content_hash(body) + '"');
+}
 
-HttpResponse tagged_json(const HttpRequest& request, std::string body) {
-  const std::string etag = entity_tag(body);
-  HttpResponse response = json_response(200, std::move(body));
-  if (etag_matches(request.header("if-none-match"), etag)) response = {304, {}, {}, {}};
+HttpResponse tagged_json(const HttpRequest& request, const std::string& body,
+                         const std::string& etag) {
+  HttpResponse response = etag_matches(request.header("if-none-match"), etag)
+                              ? HttpResponse{304, {}, {}, {}}
+                              : json_response(200, body);
   response.headers = {{"ETag", etag}, {"Cache-Control", "no-cache"}};
   return response;
 }

@@ -9,9 +9,17 @@
 
 namespace translucube::server {
 
-/// What stands in a path in the places of "{id}" and "{point}".
+/// What stands in a path in the places of "{id}", "{point}" and "{file}".
 struct PathIds {
-  std::string id, point;
+  std::string id, point, file;
+
+  /// Where a segment of a pattern goes; nullptr where it stands for itself.
+  std::string* place(std::string_view segment) {
+    return segment == "{id}"      ? &id
+           : segment == "{point}" ? &point
+           : segment == "{file}"  ? &file
+                                  : nullptr;
+  }
 };
 
 // render_endpoints.cpp
@@ -33,14 +41,19 @@ HttpResponse get_image(Endpoints&, const HttpRequest&, const PathIds&);
 HttpResponse get_point_image(Endpoints&, const HttpRequest&, const PathIds&);
 HttpResponse get_sheet(Endpoints&, const HttpRequest&, const PathIds&);
 
+// web_endpoint.cpp
+HttpResponse get_page(Endpoints&, const HttpRequest&, const PathIds&);
+HttpResponse get_web_file(Endpoints&, const HttpRequest&, const PathIds&);
+
 // event_endpoint.cpp
 HttpResponse get_render_events(Endpoints&, const HttpRequest&, const PathIds&);
 HttpResponse get_sweep_events(Endpoints&, const HttpRequest&, const PathIds&);
 
 HttpResponse json_response(int status, std::string body);
 /// A JSON answer that a client can ask for again at the price of a header.
-HttpResponse tagged_json(const HttpRequest& request, std::string body);
-std::string entity_tag(const std::string& body);
+HttpResponse tagged_json(const HttpRequest& request, const std::string& body);
+HttpResponse tagged_json(const HttpRequest& request, const std::string& body,
+                         const std::string& etag);
 
 /// A body that must be JSON, and an Idempotency-Key: a problem, or the key if there is one.
 Result<std::optional<std::string>> submission_key(const HttpRequest& request);
@@ -82,8 +95,8 @@ auto answer_after(Endpoints& endpoints, int seconds, bool& waited, Get get, Done
   return result;
 }
 
-/// What `get` answers, tagged. With `wait`: when it has ended, or is no longer as the client's
-/// If-None-Match knows it.
+/// What `get` answers, a Result<ToldText>. With `wait`: when it has ended, or is no longer as the
+/// client's If-None-Match knows it.
 template <typename Get>
 HttpResponse status_response(Endpoints& endpoints, const HttpRequest& request, Get get) {
   const auto seconds = wait_query(request);
@@ -92,11 +105,11 @@ HttpResponse status_response(Endpoints& endpoints, const HttpRequest& request, G
   bool waited = false;
   const auto status =
       answer_after(endpoints, std::get<int>(seconds), waited, get, [&](const auto& now) {
-        return api::is_end(now.state) ||
-               (!known.empty() && !etag_matches(known, entity_tag(to_json(now))));
+        return api::is_end(now->state) || (!known.empty() && !etag_matches(known, now->etag));
       });
   if (const auto* problem = std::get_if<api::Problem>(&status)) return problem_response(*problem);
-  return tagged_json(request, to_json(std::get<0>(status)));
+  const auto& [state, json, etag] = *std::get<0>(status);
+  return tagged_json(request, json, etag);
 }
 
 }  // namespace translucube::server

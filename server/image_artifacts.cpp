@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdio>
 
-#include "renderer/explorable.h"
+#include "server/developed_image.h"
 #include "server/ids.h"
 
 namespace translucube::server {
@@ -101,20 +101,6 @@ std::string explorable_name(const std::string& image) { return "explorable-" + i
 
 namespace {
 
-/// Pictures of other absorbers that are kept for a render: whoever explores asks for many.
-constexpr std::ptrdiff_t most_redeveloped = 64;
-constexpr std::string_view redeveloped_prefix = "derived-redeveloped-";
-
-void make_room(ArtifactStore& artifacts, const std::string& content) {
-  const std::vector<std::string> names = artifacts.names(content);
-  const auto redeveloped = [](const std::string& name) {
-    return name.starts_with(redeveloped_prefix);
-  };
-  if (std::ranges::count_if(names, redeveloped) < most_redeveloped) return;
-  for (const std::string& name : names)
-    if (redeveloped(name)) artifacts.remove(content, name);
-}
-
 /// What a broken disk took can be made again once it is forgotten.
 void forget(Darkroom& darkroom, const StoredResult& result) {
   if (darkroom.store.remove_result(result)) remove_files(darkroom.artifacts, result);
@@ -136,7 +122,7 @@ std::optional<StoredResult> whole_result(Darkroom& darkroom, const std::string& 
 std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::string& content,
                                                 const std::string& request,
                                                 const ImageQuery& query) {
-  auto& [catalog, colors, store, artifacts, metrics, busy] = darkroom;
+  auto& [catalog, colors, store, artifacts, metrics, explorables, busy] = darkroom;
   const auto checked = image_form(query, colors.displays());
   if (const auto* problem = std::get_if<Problem>(&checked)) return *problem;
   const auto& form = std::get<ImageForm>(checked);
@@ -153,33 +139,24 @@ std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::s
   if (!result) return gone;
   store.touch_result(content);
   const std::string& original = result->image;
-  const bool as_stored =
-      !redeveloped && form.format == ImageFormat::exr && form.colorspace == colorspaces[0];
-  std::string artifact = as_stored ? original : "derived-" + form_name(form);
-  if (redeveloped)
-    artifact =
-        std::string(redeveloped_prefix) + content_hash(redeveloped->request) + '-' + artifact;
-
+  if (redeveloped) try {
+      return redeveloped_image(darkroom, *result, *redeveloped, form);
+    } catch (const ImageError& error) {
+      spdlog::error("result {}: {}", content, error.what());
+      forget(darkroom, *result);
+      return gone;
+    }
+  const bool as_stored = form.format == ImageFormat::exr && form.colorspace == colorspaces[0];
+  const std::string artifact = as_stored ? original : "derived-" + form_name(form);
   auto file = artifacts.open(content, artifact);
   if (!file && !as_stored) {
     const std::lock_guard lock(busy);
     file = artifacts.open(content, artifact);  // another request may have made it meanwhile
     if (!file) try {
-        Image image;
-        if (redeveloped) {
-          make_room(artifacts, content);
-          const StoredExplorable stored =
-              read_explorable(artifacts.path(content, explorable_name(original)));
-          image = develop_explorable(stored.film, redeveloped->absorption.absorber,
-                                     redeveloped->absorption.sigma_a_peak);
-          metrics.count_developed_image();
-        } else {
-          image = read_image(artifacts.path(content, original));
-        }
+        Image image = read_image(artifacts.path(content, original));
         artifacts.write(content, artifact, [&](const std::filesystem::path& temporary) {
           try {
-            write_form(temporary, std::move(image), form, colors,
-                       redeveloped ? redeveloped->request : request);
+            write_form(temporary, std::move(image), form, colors, request);
           } catch (const ImageError& error) {
             throw FileError(error.what());
           }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "renderer/color.h"
 #include "renderer/image_io.h"
 #include "server/artifact_store.h"
+#include "server/explorable_cache.h"
 #include "server/job_store.h"
 #include "server/metrics.h"
 
@@ -23,6 +25,9 @@ struct ImageQuery {
   ImageFormat format = ImageFormat::png;
   std::optional<std::string> display, view, colorspace;
   api::Redevelopment redevelopment{};  ///< of an explorable render
+  bool partial = false;                ///< also of a render that has not ended
+
+  auto operator<=>(const ImageQuery&) const = default;
 };
 
 /// An image query with every default filled in.
@@ -56,17 +61,19 @@ std::string explorable_name(const std::string& image);
 /// meanwhile has another name and stays. Throws FileError.
 void remove_files(ArtifactStore& artifacts, const StoredResult& result);
 
-/// What makes pictures of other pictures. One at a time: each takes much memory.
+/// What makes pictures of other pictures.
 struct Darkroom {
   const api::Catalog& catalog;
   const ColorConfig& colors;
   JobStore& store;
   ArtifactStore& artifacts;
   Metrics& metrics;
-  std::mutex busy{};
+  ExplorableCache& explorables;
+  std::mutex busy{};  ///< of those that are kept, one at a time: each takes much memory
 };
 
-/// A finished picture in the form asked for: made on the first demand, then kept beside the EXR.
+/// A finished picture in the form asked for: made on the first demand, then kept beside the EXR,
+/// unless it is of another absorber (developed_image.h).
 /// `request`: the picture's, canonical. A problem where it has been removed to make room, or is not
 /// whole: then it is also forgotten. Throws FileError, StoreError.
 std::variant<ImageFile, api::Problem> image_artifact(Darkroom& darkroom, const std::string& content,

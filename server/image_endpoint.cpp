@@ -60,6 +60,13 @@ Result<ImageQuery> image_query(const HttpRequest& request) {
     if (name == "display") query.display = value;
     if (name == "view") query.view = value;
     if (name == "colorspace") query.colorspace = value;
+    if (name == "partial") {
+      if (value != "true" && value != "false")
+        return Problem{ProblemCode::invalid_request,
+                       "A query parameter is not valid.",
+                       {{"?partial", "must be true or false"}}};
+      query.partial = value == "true";
+    }
     if (name == "absorber") query.redevelopment.absorber = value;
     if (name == "absorption") {
       const std::optional<double> number = api::absorption_number(value);

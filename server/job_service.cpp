@@ -2,6 +2,7 @@
 
 #include "api/parse.h"
 #include "server/content.h"
+#include "server/developed_image.h"
 #include "server/job_service_parts.h"
 
 namespace translucube::server {
@@ -9,6 +10,9 @@ namespace {
 
 using api::Problem;
 using api::ProblemCode;
+
+// A file that is held open takes its place on the disk though it be removed.
+constexpr std::uint64_t largest_at_hand = 1 << 20;
 
 Problem no_such_render() { return {ProblemCode::not_found, "There is no render of this id.", {}}; }
 
@@ -70,6 +74,16 @@ Result<api::RenderStatus> JobService::get(const std::string& id) const {
   });
 }
 
+Result<ToldText> JobService::tell(const std::string& id) {
+  if (auto known = ended_.find(id)) return std::move(*known);
+  const auto now = ended_.now();
+  const auto status = get(id);
+  if (const auto* problem = std::get_if<Problem>(&status)) return *problem;
+  ToldText text = told(std::get<api::RenderStatus>(status));
+  if (api::is_end(text->state)) ended_.keep(id, text, now);
+  return text;
+}
+
 Result<RenderPage> JobService::list(const ListQuery& query) const {
   const auto filter = page_filter(query);
   if (const auto* problem = std::get_if<Problem>(&filter)) return *problem;
@@ -107,6 +121,8 @@ std::optional<Problem> JobService::remove(const std::string& id) {
     return *unused;
   });
   if (const auto* problem = std::get_if<Problem>(&result)) return *problem;
+  ended_.forget();
+  pictures_.forget();
   workers_->stop_job(id);
   discard_files(id);
   for (const StoredResult& unused : std::get<Unused>(result)) discard_result(unused);
@@ -115,15 +131,26 @@ std::optional<Problem> JobService::remove(const std::string& id) {
 }
 
 Result<ImageFile> JobService::image(const std::string& id, const ImageQuery& query) {
+  if (auto known = pictures_.find({id, query}); known && known->file->is_as_opened())
+    return std::move(*known);
+  const auto now = pictures_.now();
   auto made = guarded<Result<ImageFile>>([&]() -> Result<ImageFile> {
     const std::optional<Job> job = store_.find(id);
     if (!job || job->sweep_image) return no_such_render();
+    if (query.partial && !api::is_end(job->state))
+      if (const auto live = live_films_.find(id)) {
+        auto partial = partial_image(darkroom_, *live, id, job->request, query);
+        if (partial) return std::move(*partial);
+      }
     if (auto problem = no_picture(job->state)) return std::move(*problem);
     return image_artifact(darkroom_, store_.pictures(id).at(0).content, job->request, query);
   });
   const auto* problem = std::get_if<Problem>(&made);
   // Removed while it was read: then that is the answer.
   if (problem && problem->code == ProblemCode::gone && !store_.find(id)) return no_such_render();
+  if (const auto* image = std::get_if<ImageFile>(&made);
+      image && image->file->size() <= largest_at_hand)
+    pictures_.keep({id, query}, *image, now);
   return made;
 }
 

@@ -19,8 +19,11 @@
 #include "api/sweep_status.h"
 #include "renderer/color.h"
 #include "server/artifact_store.h"
+#include "server/explorable_cache.h"
 #include "server/image_artifacts.h"
 #include "server/job_store.h"
+#include "server/live_films.h"
+#include "server/recent.h"
 #include "server/worker.h"
 
 namespace translucube::server {
@@ -35,6 +38,19 @@ struct Accepted {
 };
 using Submission = Accepted<api::RenderStatus>;
 using SweepSubmission = Accepted<api::SweepStatus>;
+
+/// The state of a render or sweep, as a client is told it.
+struct Told {
+  api::JobState state = api::JobState::queued;
+  std::string json, etag;
+};
+using ToldText = std::shared_ptr<const Told>;
+template <typename Status>
+ToldText told(const Status& status) {
+  std::string json = to_json(status);
+  std::string etag = '"' + content_hash(json) + '"';
+  return std::make_shared<const Told>(Told{status.state, std::move(json), std::move(etag)});
+}
 
 struct RenderPage {
   std::vector<api::RenderStatus> renders;
@@ -63,12 +79,16 @@ class JobService {
   Result<Submission> submit(std::string_view document,
                             const std::optional<std::string>& idempotency_key);
   Result<api::RenderStatus> get(const std::string& id) const;
+  /// `get` as text, without a look into the store where the render has ended and was asked for.
+  Result<ToldText> tell(const std::string& id);
   Result<RenderPage> list(const ListQuery& query) const;
   /// A render that has ended stays as it ended.
   Result<api::RenderStatus> cancel(const std::string& id);
   /// Cancels if needed and removes all data.
   std::optional<api::Problem> remove(const std::string& id);
   Result<ImageFile> image(const std::string& id, const ImageQuery& query);
+  /// Samples of what `image` with `partial` shows of a render that is being traced; 0: nothing.
+  std::uint32_t samples_to_see(const std::string& id) const { return live_films_.samples(id); }
 
   // Sweeps (job_service_sweeps.cpp).
   /// What a dry run answers, JSON text.
@@ -76,6 +96,7 @@ class JobService {
   Result<SweepSubmission> submit_sweep(std::string_view document,
                                        const std::optional<std::string>& idempotency_key);
   Result<api::SweepStatus> get_sweep(const std::string& id) const;
+  Result<ToldText> tell_sweep(const std::string& id) const;
   Result<SweepPage> list_sweeps(const ListQuery& query) const;
   Result<api::SweepStatus> cancel_sweep(const std::string& id);
   std::optional<api::Problem> remove_sweep(const std::string& id);
@@ -102,9 +123,9 @@ class JobService {
   std::optional<std::string> unready_reason();
   QueueGauges gauges() const { return store_.gauges(); }
 
-  /// Refuses new work, ends all waiting, stops the workers at their next tile and gives their tasks
-  /// back to the store.
-  void shut_down();
+  /// Refuses new work and ends all waiting. Passes under way may take `drain` to end, so that they
+  /// are kept; then stops the workers at their next tile and gives their tasks back to the store.
+  void shut_down(std::chrono::milliseconds drain = {});
   bool stopping() const;
 
  private:
@@ -130,7 +151,13 @@ class JobService {
   std::chrono::steady_clock::time_point probed_at_{};
   std::optional<std::string> probe_failure_;
 
+  LiveFilms live_films_;
+  ExplorableCache explorables_;
   Darkroom darkroom_;
+  // What is asked again and again. A render that has ended stays as it is until it is removed; of a
+  // picture, it is seen once in a while that it still lies there, and is used.
+  Recent<std::string, ToldText> ended_{4096};
+  Recent<std::pair<std::string, ImageQuery>, ImageFile> pictures_{256, std::chrono::seconds(1)};
   std::unique_ptr<WorkerPool> workers_;
 };
 

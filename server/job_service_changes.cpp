@@ -52,15 +52,17 @@ JobService::JobService(const api::Catalog& catalog, const ColorConfig& colors, J
       store_(store),
       artifacts_(artifacts),
       metrics_(metrics),
-      darkroom_{catalog, colors, store, artifacts, metrics} {
+      live_films_([this] { changed(); }),
+      explorables_(catalog.server.explorable_memory_bytes),
+      darkroom_{catalog, colors, store, artifacts, metrics, explorables_} {
   clean_artifacts();
-  workers_ =
-      std::make_unique<WorkerPool>(Workshop{catalog, store, artifacts, metrics, std::move(engine),
-                                            catalog.server.threads_per_worker},
-                                   catalog.server.workers, [this] {
-                                     keep_within_quota();
-                                     changed();
-                                   });
+  workers_ = std::make_unique<WorkerPool>(
+      Workshop{catalog, store, artifacts, metrics, live_films_, explorables_, std::move(engine),
+               catalog.server.threads_per_worker},
+      catalog.server.workers, [this] {
+        keep_within_quota();
+        changed();
+      });
 }
 
 JobService::~JobService() { shut_down(); }
@@ -170,6 +172,7 @@ void JobService::discard_files(const std::string& folder) {
 }
 
 void JobService::discard_result(const StoredResult& result) {
+  pictures_.forget();
   try {
     remove_files(artifacts_, result);
   } catch (const FileError& error) {
@@ -206,12 +209,13 @@ std::optional<std::string> JobService::unready_reason() {
   return probe_failure_;
 }
 
-void JobService::shut_down() {
+void JobService::shut_down(std::chrono::milliseconds drain) {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
   change_.notify_all();
+  workers_->drain(drain);
   workers_->stop();
 }
 

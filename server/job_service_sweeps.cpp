@@ -1,5 +1,4 @@
 #include <charconv>
-#include <limits>
 
 #include "api/parse.h"
 #include "api/sweep.h"
@@ -15,12 +14,8 @@ using api::ProblemCode;
 
 Problem no_such_sweep() { return {ProblemCode::not_found, "There is no sweep of this id.", {}}; }
 
-/// A sweep that was accepted: it stays legal, whatever the limits are now.
-Result<api::Sweep> parsed(const std::string& canonical, api::Catalog catalog) {
-  constexpr double any = std::numeric_limits<double>::infinity();
-  constexpr auto most = std::numeric_limits<std::uint32_t>::max();
-  catalog.limits = {canonical.size(), std::uint64_t{1} << 31, most, any, any, most};
-  auto result = api::parse_sweep_request(canonical, catalog);
+Result<api::Sweep> parsed(const std::string& canonical, const api::Catalog& catalog) {
+  auto result = api::parse_sweep_request(canonical, api::without_limits(catalog));
   if (auto* problem = std::get_if<Problem>(&result)) return std::move(*problem);
   return std::get<api::Sweep>(std::move(result));
 }
@@ -93,6 +88,8 @@ Result<SweepSubmission> JobService::submit_sweep(
     if (submitted.created) workers_->wake();
     auto status = status_of(submitted.sweep, store_, catalog_);
     if (auto* problem = std::get_if<Problem>(&status)) return std::move(*problem);
+    for (const api::SweepImageStatus& image : std::get<api::SweepStatus>(status).images)
+      if (submitted.created && image.cached) metrics_.count_cache_hit();
     return SweepSubmission{std::get<api::SweepStatus>(std::move(status)), submitted.created};
   });
 }
@@ -103,6 +100,12 @@ Result<api::SweepStatus> JobService::get_sweep(const std::string& id) const {
     if (!sweep) return no_such_sweep();
     return status_of(*sweep, store_, catalog_);
   });
+}
+
+Result<ToldText> JobService::tell_sweep(const std::string& id) const {
+  const auto status = get_sweep(id);
+  if (const auto* problem = std::get_if<Problem>(&status)) return *problem;
+  return told(std::get<api::SweepStatus>(status));
 }
 
 Result<SweepPage> JobService::list_sweeps(const ListQuery& query) const {

@@ -66,17 +66,17 @@ std::variant<Submitted, IdempotencyMismatch, QueueFull> JobStore::submit(const N
       return Submitted{std::move(known), false};
     }
   }
-  Statement made(*writer_, "SELECT stats FROM results WHERE content = ?");
-  const bool cached = made.bind(job.content).step();
-  if (!cached && !queue_has_room(1)) return QueueFull{};
   const std::int64_t now = options_.clock();
+  const std::optional<std::string> stats = use_results({{0, job.content}}, now);
+  const bool cached = stats.has_value();
+  if (!cached && !queue_has_room(1)) return QueueFull{};
   const std::string id = ids_->next(now);
   Statement(*writer_,
             "INSERT INTO jobs(id, state, request, material, idempotency_key, created_ms, "
             "finished_ms, total_samples, stats, cached) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .bind(id, text(cached ? JobState::succeeded : JobState::queued), job.request, job.material,
             job.idempotency_key, now, cached ? std::optional(now) : std::nullopt, job.total_samples,
-            cached ? std::optional(made.text(0)) : std::nullopt, cached ? 1 : 0)
+            stats, cached ? 1 : 0)
       .run();
   insert_pictures(id, {{0, job.content}});
   if (!cached) rows::insert_task(*writer_, id, job.first_pass, Priority::interactive);

@@ -234,6 +234,7 @@ class JobStore {
   std::optional<StoredSweep> find_sweep_on(sql::Connection& connection,
                                            const std::string& id) const;
   bool queue_has_room(std::size_t jobs);
+  std::optional<std::string> use_results(const std::vector<Picture>& lanes, std::int64_t now);
   void insert_pictures(const std::string& id, const std::vector<Picture>& lanes);
   std::vector<StoredResult> drop_unused_results(const std::vector<std::string>& contents);
   bool holds(const Task& task);

@@ -31,6 +31,23 @@ std::optional<StoredResult> JobStore::find_result(const std::string& content) co
   return result_of(statement);
 }
 
+/// Inside a transaction: the stats of the first picture if all are there, which are used now: they
+/// were asked for again.
+std::optional<std::string> JobStore::use_results(const std::vector<Picture>& lanes,
+                                                 std::int64_t now) {
+  std::optional<std::string> stats;
+  for (const Picture& lane : lanes) {
+    Statement made(*writer_, "SELECT stats FROM results WHERE content = ?");
+    if (!made.bind(lane.content).step()) return std::nullopt;
+    if (!stats) stats = made.text(0);
+  }
+  for (const Picture& lane : lanes)
+    Statement(*writer_, "UPDATE results SET used_ms = ? WHERE content = ?")
+        .bind(now, lane.content)
+        .run();
+  return stats;
+}
+
 void JobStore::touch_result(const std::string& content) {
   const std::int64_t now = options_.clock();
   {

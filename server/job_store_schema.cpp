@@ -49,7 +49,8 @@ CREATE TABLE probe(id INTEGER PRIMARY KEY, written_ms INTEGER NOT NULL);
 )sql";
 
 /// Sweeps, results by their content, events, priorities. The results of version 1 lie in the folder
-/// of their job, whose id thus is the name of their content.
+/// of their job, whose id thus is the name of their content; one that is not finished is put
+/// elsewhere, since that folder goes with the job's end.
 constexpr const char* from_1_to_2 = R"sql(
 CREATE TABLE sweeps(
   id TEXT PRIMARY KEY NOT NULL,
@@ -95,7 +96,8 @@ CREATE TRIGGER events_of_job AFTER DELETE ON jobs
   BEGIN DELETE FROM events WHERE subject = OLD.id; END;
 CREATE TRIGGER events_of_sweep AFTER DELETE ON sweeps
   BEGIN DELETE FROM events WHERE subject = OLD.id; END;
-INSERT INTO pictures SELECT id, 0, 0, id FROM jobs;
+INSERT INTO pictures SELECT id, 0, 0,
+  CASE WHEN state IN ('queued', 'running') THEN lower(hex(randomblob(32))) ELSE id END FROM jobs;
 INSERT INTO results SELECT id, image, NULL, COALESCE(stats, '{}'), 0, finished_ms
   FROM jobs WHERE state = 'succeeded' AND image IS NOT NULL;
 ALTER TABLE jobs DROP COLUMN image;

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "api/event.h"
 #include "server/job_store_rows.h"
 
@@ -32,6 +34,7 @@ std::variant<SubmittedSweep, IdempotencyMismatch, QueueFull> JobStore::submit(
     const NewSweep& sweep) {
   const Lock lock(writer_->mutex);
   Transaction transaction(*writer_);
+  const std::int64_t now = options_.clock();
   if (sweep.idempotency_key) {
     Statement same(*writer_, std::string(select_sweep) + "WHERE idempotency_key = ?");
     if (same.bind(*sweep.idempotency_key).step()) {
@@ -40,8 +43,11 @@ std::variant<SubmittedSweep, IdempotencyMismatch, QueueFull> JobStore::submit(
       return SubmittedSweep{std::move(known), false};
     }
   }
-  if (!queue_has_room(sweep.images.size())) return QueueFull{};
-  const std::int64_t now = options_.clock();
+  std::vector<std::optional<std::string>> made;
+  for (const auto& lanes : sweep.images) made.push_back(use_results(lanes, now));
+  const auto missing = static_cast<std::size_t>(
+      std::ranges::count_if(made, [](const auto& stats) { return !stats; }));
+  if (missing > 0 && !queue_has_room(missing)) return QueueFull{};
   const std::string id = ids_->next(now);
   std::size_t points = 0;
   for (const auto& lanes : sweep.images) points += lanes.size();
@@ -51,19 +57,30 @@ std::variant<SubmittedSweep, IdempotencyMismatch, QueueFull> JobStore::submit(
       .bind(id, text(JobState::queued), sweep.request, sweep.idempotency_key, now,
             static_cast<std::int64_t>(points), static_cast<std::int64_t>(sweep.images.size()))
       .run();
+  std::vector<std::uint32_t> there;
   for (std::size_t image = 0; image < sweep.images.size(); ++image) {
     const std::string job = ids_->next(now);
+    const bool cached = made[image].has_value();
     Statement(*writer_,
-              "INSERT INTO jobs(id, state, request, material, created_ms, total_samples, "
-              "sweep_id, image_index, points) VALUES (?, ?, '', '', ?, ?, ?, ?, ?)")
-        .bind(job, text(JobState::queued), now, sweep.total_samples, id,
-              static_cast<std::int64_t>(image),
+              "INSERT INTO jobs(id, state, request, material, created_ms, finished_ms, "
+              "total_samples, stats, cached, sweep_id, image_index, points) "
+              "VALUES (?, ?, '', '', ?, ?, ?, ?, ?, ?, ?, ?)")
+        .bind(job, text(cached ? JobState::succeeded : JobState::queued), now,
+              cached ? std::optional(now) : std::nullopt, sweep.total_samples, made[image],
+              cached ? 1 : 0, id, static_cast<std::int64_t>(image),
               static_cast<std::int64_t>(sweep.images[image].size()))
         .run();
     insert_pictures(job, sweep.images[image]);
-    rows::insert_task(*writer_, job, sweep.first_pass, Priority::batch);
+    if (!cached) rows::insert_task(*writer_, job, sweep.first_pass, Priority::batch);
+    for (const Picture& picture : sweep.images[image])
+      if (cached) there.push_back(picture.point);
   }
-  tell(id, "state", api::sweep_event(JobState::queued, rows::point_counts(*writer_, id)));
+  const api::StateCounts counts = rows::point_counts(*writer_, id);
+  tell(id, "state", api::sweep_event(JobState::queued, counts));
+  if (!there.empty()) {
+    tell(id, "points", api::points_event(there, JobState::succeeded, counts));
+    follow_sweep(id);
+  }
   SubmittedSweep submitted{*find_sweep_on(*writer_, id), true};
   transaction.commit();
   return submitted;

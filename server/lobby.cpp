@@ -1,10 +1,11 @@
 #include "server/lobby.h"
 
 #include <sys/epoll.h>
+#include <sys/eventfd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
+#include <condition_variable>
 #include <system_error>
 #include <vector>
 
@@ -19,14 +20,17 @@ constexpr milliseconds longest_farewell(2000);
 
 }  // namespace
 
-Lobby::Lobby(LobbyTimes times, std::function<void(std::unique_ptr<Connection>)> ready,
-             std::function<std::string(api::ProblemCode)> refusal)
+Lobby::Lobby(LobbyTimes times, std::function<std::string(api::ProblemCode)> refusal)
     : times_(times),
-      ready_(std::move(ready)),
       refusal_(std::move(refusal)),
-      epoll_(::epoll_create1(EPOLL_CLOEXEC)) {
-  if (!epoll_) throw std::system_error(errno, std::generic_category(), "epoll_create1");
-  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+      epoll_(::epoll_create1(EPOLL_CLOEXEC)),
+      bell_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  epoll_event event{};
+  event.events = EPOLLIN;
+  event.data.fd = bell_.get();
+  if (!epoll_ || !bell_ || ::epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, bell_.get(), &event) != 0)
+    throw std::system_error(errno, std::generic_category(), "epoll");
+  thread_ = std::jthread([this](const std::stop_token& stop) { keep_time(stop); });
 }
 
 Lobby::~Lobby() { close(); }
@@ -45,62 +49,68 @@ void Lobby::linger(std::unique_ptr<Connection> connection) {
 }
 
 void Lobby::add(std::unique_ptr<Connection> connection, Awaits awaits, milliseconds time) {
-  const int socket = connection->socket();
-  {
-    const std::lock_guard lock(mutex_);
-    if (closed_) return;
-    epoll_event event{};
-    event.events = EPOLLIN;
-    event.data.fd = socket;
-    if (::epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, socket, &event) != 0) return;
-    const Time now = steady_clock::now();
-    guests_[socket] = {std::move(connection), awaits, now, now + time};
-  }
-  // A further request may have come along with the last one: epoll would not tell.
-  if (awaits == Awaits::request) look_after(socket);
+  const Time now = steady_clock::now();
+  add({std::move(connection), awaits, now, now + time});
 }
 
-std::unique_ptr<Connection> Lobby::take(int socket) {
-  const auto guest = guests_.find(socket);
-  auto connection = std::move(guest->second.connection);
-  guests_.erase(guest);
-  ::epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, socket, nullptr);
-  return connection;
+void Lobby::add(Guest guest) {
+  const int socket = guest.connection->socket();
+  epoll_event event{};
+  // Once, so that one thread gets it.
+  event.events = EPOLLIN | EPOLLONESHOT;
+  // A further request may have come along with the last one, of which the socket would not tell.
+  if (guest.awaits == Awaits::request && guest.connection->head() == Connection::Head::whole)
+    event.events |= EPOLLOUT;
+  event.data.fd = socket;
+  const std::lock_guard lock(mutex_);
+  if (closed_) return;
+  if (::epoll_ctl(epoll_.get(), EPOLL_CTL_MOD, socket, &event) != 0 &&
+      ::epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, socket, &event) != 0)
+    return;
+  guests_[socket] = std::move(guest);
 }
 
-void Lobby::look_after(int socket) {
-  std::unique_ptr<Connection> ready, refused;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto it = guests_.find(socket);
-    if (it == guests_.end()) return;
-    Guest& guest = it->second;
-    if (guest.awaits == Awaits::close) {
-      if (!guest.connection->drop_received()) take(socket);
-      return;
+std::unique_ptr<Connection> Lobby::next() {
+  for (;;) {
+    epoll_event event;
+    const int count = ::epoll_wait(epoll_.get(), &event, 1, -1);
+    if (count < 0 && errno == EINTR) continue;
+    if (count != 1 || event.data.fd == bell_.get()) return nullptr;
+    std::map<int, Guest>::node_type guest;
+    {
+      const std::lock_guard lock(mutex_);
+      guest = guests_.extract(event.data.fd);
     }
-    switch (guest.connection->receive_head()) {
-      case Connection::Head::missing:
-        return;
-      case Connection::Head::begun:
-        if (guest.awaits == Awaits::request) {
-          guest.awaits = Awaits::head;
-          guest.deadline = steady_clock::now() + times_.head;
-        }
-        return;
-      case Connection::Head::whole:
-        ready = take(socket);
-        break;
-      case Connection::Head::too_large:
-        refused = take(socket);
-        break;
-      case Connection::Head::closed:
-        take(socket);
-        return;
-    }
+    if (guest.empty()) continue;  // its time was over meanwhile
+    if (auto connection = look_after(std::move(guest.mapped()))) return connection;
   }
-  if (ready) ready_(std::move(ready));
-  if (refused) refuse(std::move(refused), api::ProblemCode::headers_too_large);
+}
+
+/// The connection, if it can be served.
+std::unique_ptr<Connection> Lobby::look_after(Guest guest) {
+  if (guest.awaits == Awaits::close) {
+    if (guest.connection->drop_received()) add(std::move(guest));
+    return nullptr;
+  }
+  switch (guest.connection->receive_head()) {
+    case Connection::Head::begun:
+      if (guest.awaits == Awaits::request) {
+        guest.awaits = Awaits::head;
+        guest.deadline = steady_clock::now() + times_.head;
+      }
+      [[fallthrough]];
+    case Connection::Head::missing:
+      add(std::move(guest));
+      return nullptr;
+    case Connection::Head::whole:
+      return std::move(guest.connection);
+    case Connection::Head::too_large:
+      refuse(std::move(guest.connection), api::ProblemCode::headers_too_large);
+      return nullptr;
+    case Connection::Head::closed:
+      break;
+  }
+  return nullptr;
 }
 
 void Lobby::close_overdue() {
@@ -112,11 +122,11 @@ void Lobby::close_overdue() {
     for (const auto& [socket, guest] : guests_)
       if (guest.deadline <= now) overdue.push_back(socket);
     for (const int socket : overdue) {
-      const bool owes_head = guests_.at(socket).awaits == Awaits::head;
-      auto connection = take(socket);
+      Guest guest = std::move(guests_.extract(socket).mapped());
       // One that never sent anything has not asked.
-      if (owes_head && connection->receive_head() == Connection::Head::begun)
-        late.push_back(std::move(connection));
+      if (guest.awaits == Awaits::head &&
+          guest.connection->receive_head() == Connection::Head::begun)
+        late.push_back(std::move(guest.connection));
     }
   }
   for (auto& connection : late) refuse(std::move(connection), api::ProblemCode::request_timeout);
@@ -132,7 +142,7 @@ bool Lobby::evict() {
   const auto oldest =
       std::ranges::min_element(guests_, {}, [](const auto& guest) { return guest.second.since; });
   if (oldest == guests_.end()) return false;
-  take(oldest->first);
+  guests_.erase(oldest);
   return true;
 }
 
@@ -142,21 +152,17 @@ void Lobby::close() {
     closed_ = true;
     guests_.clear();
   }
+  ::eventfd_write(bell_.get(), 1);
   thread_.request_stop();
   if (thread_.joinable()) thread_.join();
 }
 
-void Lobby::run(const std::stop_token& stop) {
-  std::array<epoll_event, 64> events;
-  auto looked = steady_clock::now();
-  while (!stop.stop_requested()) {
-    const int count = ::epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()),
-                                   static_cast<int>(glance.count()));
-    for (int i = 0; i < count; ++i) look_after(events[static_cast<std::size_t>(i)].data.fd);
-    if (steady_clock::now() - looked < glance) continue;
-    looked = steady_clock::now();
+void Lobby::keep_time(const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  while (!never.wait_for(lock, stop, glance, [&] { return stop.stop_requested(); }))
     close_overdue();
-  }
 }
 
 }  // namespace translucube::server

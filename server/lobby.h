@@ -17,16 +17,18 @@ struct LobbyTimes {
   std::chrono::milliseconds idle;  ///< until the first byte of a further request
 };
 
-/// Holds the connections that are between requests, or whose next request has not come whole: one
-/// thread for all of them, so that neither idle clients nor those that send a byte a second
-/// ("Slowloris") take one from a client that is served.
+/// Holds the connections that are between requests, or whose next request has not come whole, so
+/// that neither idle clients nor those that send a byte a second ("Slowloris") take a thread from a
+/// client that is served.
 class Lobby {
  public:
-  /// `ready` takes a connection that has the headers of a request. `refusal` is what a connection
-  /// gets to read before it is closed for a reason.
-  Lobby(LobbyTimes times, std::function<void(std::unique_ptr<Connection>)> ready,
-        std::function<std::string(api::ProblemCode)> refusal);
+  /// `refusal` is what a connection gets to read before it is closed for a reason.
+  Lobby(LobbyTimes times, std::function<std::string(api::ProblemCode)> refusal);
   ~Lobby();
+
+  /// Waits for a connection that has the headers of a request, which the thread that waited then
+  /// serves: no thread is woken for another. Null once the lobby is closed.
+  std::unique_ptr<Connection> next();
 
   void enter(std::unique_ptr<Connection> connection);   ///< a new one
   void wait(std::unique_ptr<Connection> connection);    ///< answered, kept alive
@@ -46,16 +48,15 @@ class Lobby {
   };
 
   void add(std::unique_ptr<Connection> connection, Awaits awaits, std::chrono::milliseconds time);
-  void run(const std::stop_token& stop);
-  void look_after(int socket);
+  void add(Guest guest);
+  std::unique_ptr<Connection> look_after(Guest guest);
+  void keep_time(const std::stop_token& stop);
   void close_overdue();
   void refuse(std::unique_ptr<Connection> connection, api::ProblemCode code);
-  std::unique_ptr<Connection> take(int socket);
 
   const LobbyTimes times_;
-  const std::function<void(std::unique_ptr<Connection>)> ready_;
   const std::function<std::string(api::ProblemCode)> refusal_;
-  FileDescriptor epoll_;
+  FileDescriptor epoll_, bell_;  ///< the bell rings once the lobby is closed
   std::mutex mutex_;
   bool closed_ = false;
   std::map<int, Guest> guests_;  ///< by socket

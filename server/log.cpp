@@ -4,7 +4,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <charconv>
 #include <chrono>
 
 #include "server/clock.h"
@@ -19,33 +21,63 @@ constexpr std::size_t longest_text = 512;
 constexpr char fields_follow = '\x1e';
 std::atomic<LogFormat> current_format = LogFormat::logfmt;
 
-std::string quoted(LogFormat format, std::string_view text) {
-  std::string result = "\"";
+void append_quoted(std::string& out, LogFormat format, std::string_view text) {
+  out += '"';
   for (const char c : text.substr(0, longest_text)) {
     const auto byte = static_cast<unsigned char>(c);
     if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
+      out += '\\';
+      out += c;
     } else if (byte < 32 || byte > 126) {
-      result += format == LogFormat::json ? "\\u00" : "\\x";
-      result += "0123456789abcdef"[byte >> 4];
-      result += "0123456789abcdef"[byte & 15];
+      out += format == LogFormat::json ? "\\u00" : "\\x";
+      out += "0123456789abcdef"[byte >> 4];
+      out += "0123456789abcdef"[byte & 15];
     } else {
-      result += c;
+      out += c;
     }
   }
-  return result + '"';
+  out += '"';
 }
 
-std::string value_text(LogFormat format, const LogValue& value) {
-  if (const auto* number = std::get_if<std::int64_t>(&value)) return std::to_string(*number);
-  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.6g}", *number);
-  const std::string& text = std::get<std::string>(value);
-  const bool plain =
-      !text.empty() && text.size() <= longest_text && std::ranges::all_of(text, [](char c) {
-        return c > ' ' && c < 127 && c != '"' && c != '=' && c != '\\';
-      });
-  return plain && format == LogFormat::logfmt ? text : quoted(format, text);
+template <typename... Form>
+void append_number(std::string& out, auto number, Form... form) {
+  std::array<char, 32> digits;
+  const auto [end, error] =
+      std::to_chars(digits.data(), digits.data() + digits.size(), number, form...);
+  out.append(digits.data(), end);
+}
+
+bool is_plain(std::string_view text) {
+  return !text.empty() && text.size() <= longest_text && std::ranges::all_of(text, [](char c) {
+    return c > ' ' && c < 127 && c != '"' && c != '=' && c != '\\';
+  });
+}
+
+void append_value(std::string& out, LogFormat format, const LogValue& value) {
+  if (const auto* number = std::get_if<std::int64_t>(&value)) {
+    append_number(out, *number);
+  } else if (const auto* real = std::get_if<double>(&value)) {
+    append_number(out, *real, std::chars_format::general, 6);
+  } else {
+    const std::string_view text = std::get<std::string_view>(value);
+    if (format == LogFormat::logfmt && is_plain(text))
+      out += text;
+    else
+      append_quoted(out, format, text);
+  }
+}
+
+void append_field(std::string& out, LogFormat format, std::string_view key, const LogValue& value) {
+  if (format == LogFormat::json) {
+    out += ",\"";
+    out += key;
+    out += "\":";
+  } else {
+    out += ' ';
+    out += key;
+    out += '=';
+  }
+  append_value(out, format, value);
 }
 
 class Formatter : public spdlog::formatter {
@@ -56,17 +88,21 @@ class Formatter : public spdlog::formatter {
     using namespace std::chrono;
     const std::string time =
         rfc3339(duration_cast<milliseconds>(message.time.time_since_epoch()).count());
-    const auto level_view = spdlog::level::to_string_view(message.level);
-    const std::string level(level_view.data(), level_view.size());
+    const auto level = spdlog::level::to_string_view(message.level);
     std::string_view text(message.payload.data(), message.payload.size());
-    const bool has_fields = text.starts_with(fields_follow);
-    if (has_fields) text.remove_prefix(1);
 
-    std::string line = log_text(format_, {{"time", time}, {"level", level}});
-    line += has_fields ? std::string(text) : log_text(format_, {{"message", std::string(text)}});
-    line.erase(0, 1);
-    if (format_ == LogFormat::json) line = '{' + line + '}';
-    line += '\n';
+    std::string line;
+    append_field(line, format_, "time", time);
+    append_field(line, format_, "level", std::string_view(level.data(), level.size()));
+    if (text.starts_with(fields_follow))
+      line += text.substr(1);
+    else
+      append_field(line, format_, "message", text);
+    line += format_ == LogFormat::json ? "}\n" : "\n";
+    if (format_ == LogFormat::json)
+      line.front() = '{';  // for the first comma
+    else
+      line.erase(0, 1);
     out.append(line.data(), line.data() + line.size());
   }
 
@@ -82,13 +118,7 @@ class Formatter : public spdlog::formatter {
 
 std::string log_text(LogFormat format, const LogFields& fields) {
   std::string text;
-  for (const auto& [key, value] : fields) {
-    if (format == LogFormat::json)
-      text += ",\"" + std::string(key) + "\":";
-    else
-      text += ' ' + std::string(key) + '=';
-    text += value_text(format, value);
-  }
+  for (const auto& [key, value] : fields) append_field(text, format, key, value);
   return text;
 }
 

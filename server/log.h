@@ -14,7 +14,7 @@
 
 namespace translucube::server {
 
-using LogValue = std::variant<std::string, std::int64_t, double>;
+using LogValue = std::variant<std::string_view, std::int64_t, double>;
 using LogFields = std::vector<std::pair<std::string_view, LogValue>>;
 
 /// ` key=value` for each field, or `,"key":value`. Text is cut at 512 bytes; bytes that are not

@@ -8,8 +8,10 @@
 #include <spdlog/spdlog.h>
 
 #include <iterator>
+#include <map>
 #include <mutex>
 #include <sstream>
+#include <tuple>
 #include <vector>
 
 namespace translucube::server {
@@ -101,6 +103,25 @@ struct Metrics::Impl {
   Counter& traced = images.Add({{"origin", "traced"}});
   Counter& developed = images.Add({{"origin", "developed"}});
 
+  struct OfRequest {
+    Counter& count;
+    Histogram& seconds;
+  };
+  /// By method, route and status: the registry's own look-up builds texts and hashes them.
+  std::map<std::tuple<std::string, std::string, int>, OfRequest, std::less<>> of_requests;
+  std::mutex of_requests_mutex;
+
+  OfRequest of_request(std::string_view method, std::string_view route, int status) {
+    const std::lock_guard lock(of_requests_mutex);
+    const auto known = of_requests.find(std::tuple(method, route, status));
+    if (known != of_requests.end()) return known->second;
+    const std::string a(method), b(route);
+    const OfRequest made{
+        requests.Add({{"method", a}, {"route", b}, {"status", std::to_string(status)}}),
+        request_seconds.Add({{"method", a}, {"route", b}}, request_buckets)};
+    return of_requests.emplace(std::tuple(a, b, status), made).first->second;
+  }
+
   std::mutex mutex;
   std::function<StoreGauges()> store_gauges;
 
@@ -148,10 +169,9 @@ Metrics::~Metrics() = default;
 
 void Metrics::count_request(std::string_view method, std::string_view route, int status,
                             double seconds) {
-  const std::string a(method), b(route);
-  impl_->requests.Add({{"method", a}, {"route", b}, {"status", std::to_string(status)}})
-      .Increment();
-  impl_->request_seconds.Add({{"method", a}, {"route", b}}, request_buckets).Observe(seconds);
+  auto [count, duration] = impl_->of_request(method, route, status);
+  count.Increment();
+  duration.Observe(seconds);
 }
 
 std::shared_ptr<void> Metrics::open_stream() {

@@ -49,7 +49,7 @@ HttpResponse list_renders(Endpoints& endpoints, const HttpRequest& request, cons
 }
 
 HttpResponse get_render(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
-  return status_response(endpoints, request, [&] { return endpoints.service.get(ids.id); });
+  return status_response(endpoints, request, [&] { return endpoints.service.tell(ids.id); });
 }
 
 HttpResponse cancel_render(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {

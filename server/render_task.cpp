@@ -55,8 +55,6 @@ std::optional<std::uint32_t> TaskRunner::total_samples() const {
   return target ? std::optional(target->samples) : std::nullopt;
 }
 
-void TaskRunner::forget() { hand_ = {}; }
-
 void TaskRunner::run(const Task& task, std::stop_source work) {
   try {
     if (task.attempts > max_attempts) {
@@ -129,87 +127,38 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
 
   if (!stored && task_seconds > seconds_between_checkpoints)
     workshop_.artifacts.write_pass(task.job_id, *pass);
-  if (hand_.film.passes == 0)
-    hand_.film = Film(pass->width, pass->height, pass->lanes, pass->shares);
-  merge(hand_.film, *pass);
-  if (hand_.film.counters.nan_samples > 0) {
+  workshop_.live_films.merge(*hand_.live, *pass);
+  if (hand_.film().counters.nan_samples > 0) {
     fail(task, {api::ProblemCode::internal,
-                "The renderer made " + std::to_string(hand_.film.counters.nan_samples) +
+                "The renderer made " + std::to_string(hand_.film().counters.nan_samples) +
                     " samples that are not finite: a bug, please report this request.",
                 {}});
     return;
   }
   const double seconds = hand_.seconds + task_seconds;
   const std::optional<Pass> next =
-      plan_pass(hand_.film.passes, hand_.job.pixels(), total_samples());
-  if (!next || meets(hand_.job.quality(), hand_.film, seconds)) {
+      plan_pass(hand_.film().passes, hand_.job.pixels(), total_samples());
+  if (!next || meets(hand_.job.quality(), hand_.film(), seconds)) {
     pass.reset();
     finish(task, task_seconds, true);
     return;
   }
 
-  if (!stored && task_seconds <= seconds_between_checkpoints)
+  // An explorable film is written when it is put down, or with a checkpoint: that takes longer than
+  // a short pass.
+  if (!stored && task_seconds <= seconds_between_checkpoints && !hand_.film().shares)
     workshop_.artifacts.write_pass(task.job_id, *pass);
   pass.reset();
-  const TaskResult result{task_seconds, progress_of(hand_.film, hand_.job.quality(), seconds)};
+  const TaskResult result{task_seconds, progress_of(hand_.film(), hand_.job.quality(), seconds)};
   if (!workshop_.store.complete(task, result, *next)) {
     forget();
     tidy(task.job_id);
     return;
   }
   hand_.seconds = seconds;
-  if (seconds - hand_.seconds_at_checkpoint >= seconds_between_checkpoints) {
-    workshop_.artifacts.write_film(task.job_id, hand_.film);
-    workshop_.artifacts.remove_films_before(task.job_id, hand_.film.passes);
-    hand_.seconds_at_checkpoint = seconds;
-  }
-}
-
-/// Makes the job's scene and its merged film of the passes before the task's. False where it ended
-/// the task instead.
-bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token stop) {
-  if (hand_.id == task.job_id && hand_.film.passes == task.pass.index) return true;
-  if (hand_.id != task.job_id) {
-    forget();
-    // Another job may have made the same pictures since this one was accepted.
-    if (workshop_.store.finish_from_results(task)) {
-      workshop_.metrics.count_cache_hit();
-      workshop_.artifacts.remove_all(task.job_id);
-      return false;
-    }
-    auto traced = traced_job(job, workshop_.store, workshop_.catalog);
-    if (const auto* problem = std::get_if<api::Problem>(&traced)) {
-      fail(task, *problem);
-      return false;
-    }
-    hand_.job = std::get<TracedJob>(std::move(traced));
-    hand_.scene = workshop_.engine.build(api::scene_spec(hand_.job.requests, workshop_.catalog));
-    hand_.id = task.job_id;
-  }
-  hand_.film = workshop_.artifacts.read_film(task.job_id, task.pass.index);
-  hand_.seconds = workshop_.store.traced_seconds(task.job_id);
-  hand_.seconds_at_checkpoint = hand_.seconds;
-  // A checkpoint lost to a broken disk costs time, not the render.
-  while (hand_.film.passes < task.pass.index) {
-    const std::optional<Pass> lost =
-        plan_pass(hand_.film.passes, hand_.job.pixels(), total_samples());
-    std::optional<PassFilm> pass;
-    if (lost) pass = workshop_.artifacts.read_pass(task.job_id, *lost);
-    if (lost && !pass) {
-      spdlog::warn("render {}: pass {} is traced again", task.job_id, lost->index);
-      pass = workshop_.engine.trace(*hand_.scene, *lost, workshop_.threads, stop);
-    }
-    if (!pass) {
-      forget();
-      workshop_.store.release(task);
-      return false;
-    }
-    workshop_.artifacts.write_pass(task.job_id, *pass);
-    if (hand_.film.passes == 0)
-      hand_.film = Film(pass->width, pass->height, pass->lanes, pass->shares);
-    merge(hand_.film, *pass);
-  }
-  return true;
+  if (seconds - hand_.seconds_at_checkpoint >=
+      std::max(seconds_between_checkpoints, hand_.least_between_checkpoints))
+    keep_checkpoint();
 }
 
 /// The pictures of all lanes, and what the store keeps of them.
@@ -232,14 +181,16 @@ std::vector<StoredResult> TaskRunner::write_pictures(const Task& task, const std
       return std::filesystem::file_size(workshop_.artifacts.path(result.content, file_name));
     };
     Image picture;
-    if (hand_.film.shares) {
-      const ExplorableFilm film = explorable_film(*hand_.scene, hand_.film);
+    if (hand_.film().shares) {
+      const auto film =
+          std::make_shared<const ExplorableFilm>(explorable_film(*hand_.scene, hand_.film()));
       result.bytes = write(explorable_name(name), [&](const std::filesystem::path& file) {
-        write_explorable(file, film, canonical);
+        write_explorable(file, *film, canonical);
       });
-      picture = develop_explorable(film, *hand_.scene, workshop_.threads);
+      picture = develop_explorable(*film, *hand_.scene, workshop_.threads);
+      workshop_.explorables.keep(explorable_name(name), film);
     } else {
-      picture = develop(hand_.film, static_cast<int>(lane));
+      picture = develop(hand_.film(), static_cast<int>(lane));
     }
     result.image_bytes = write(name, [&](const std::filesystem::path& file) {
       write_image(file, picture, ImageFormat::exr, {canonical, "lin_rec709"});
@@ -263,9 +214,9 @@ void TaskRunner::discard(const std::vector<StoredResult>& results) {
 void TaskRunner::finish(const Task& task, double task_seconds, bool with_pass) {
   const double seconds = hand_.seconds + task_seconds;
   const std::string stats =
-      api::stats_json(workshop_.engine.stats(*hand_.scene, hand_.film, seconds, threads()));
+      api::stats_json(workshop_.engine.stats(*hand_.scene, hand_.film(), seconds, threads()));
   const std::vector<StoredResult> results = write_pictures(task, stats);
-  const TaskResult result{task_seconds, progress_of(hand_.film, hand_.job.quality(), seconds)};
+  const TaskResult result{task_seconds, progress_of(hand_.film(), hand_.job.quality(), seconds)};
   const bool finished = workshop_.store.finish(task, result, with_pass, stats, results);
   discard(results);
   if (finished) {

@@ -8,7 +8,9 @@
 #include "api/problem.h"
 #include "server/artifact_store.h"
 #include "server/engine.h"
+#include "server/explorable_cache.h"
 #include "server/job_store.h"
+#include "server/live_films.h"
 #include "server/metrics.h"
 #include "server/traced_job.h"
 
@@ -20,6 +22,8 @@ struct Workshop {
   JobStore& store;
   ArtifactStore& artifacts;
   Metrics& metrics;
+  LiveFilms& live_films;
+  ExplorableCache& explorables;
   Engine engine;
   int threads = 0;  ///< for each render; 0: all cores
 };
@@ -34,7 +38,8 @@ class TaskRunner {
   /// Whatever fails ends in the store: as a failed job, or as a task to try again. `work` stops the
   /// tracing; the task is then given back. Does not throw.
   void run(const Task& task, std::stop_source work);
-  void forget();  ///< frees the memory of the last job
+  /// Frees the memory of the last job. What is not on the disk of it is written first.
+  void put_down();
   const std::string& job_in_hand() const { return hand_.id; }
 
  private:
@@ -42,12 +47,19 @@ class TaskRunner {
     std::string id;
     TracedJob job;
     std::shared_ptr<const Scene> scene;
-    Film film;
+    std::shared_ptr<LiveFilm> live = std::make_shared<LiveFilm>();
     double seconds = 0;  ///< wall clock of tracing, over all runs of the service
     double seconds_at_checkpoint = 0;
+    double least_between_checkpoints = 0;  ///< [s]
+    std::uint32_t unsaved_from = 0;  ///< pass from which on an explorable film is not on the disk
+
+    const Film& film() const { return live->film; }
   };
 
   void run_or_throw(const Task& task, std::stop_source work);
+  void forget();
+  std::optional<Film> live_film(const Task& task) const;
+  void keep_checkpoint();
   bool take_in_hand(const Task& task, const Job& job, std::stop_token stop);
   void finish(const Task& task, double task_seconds, bool with_pass);
   std::vector<StoredResult> write_pictures(const Task& task, const std::string& stats);

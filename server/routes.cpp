@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <random>
+#include <span>
 
 #include "server/http_adapter.h"
 #include "server/http_problems.h"
@@ -42,6 +44,13 @@ bool is_request_id(std::string_view text) {
   });
 }
 
+/// Names a request in the log; it need not be hard to guess.
+std::string request_id() {
+  thread_local std::mt19937_64 numbers{std::random_device()()};
+  const std::uint64_t number = numbers();
+  return hex(std::span(reinterpret_cast<const unsigned char*>(&number), sizeof number));
+}
+
 /// Makes the current request, without a body.
 void begin(const httplib::Request& request) {
   HttpRequest plain{request.method, request.path, {}, {}, {}};
@@ -54,7 +63,7 @@ void begin(const httplib::Request& request) {
     if (!fresh) it->second += ", " + value;
   }
   const std::string given = request.get_header_value(request_id_header);
-  plain.id = is_request_id(given) ? given : random_hex(8);
+  plain.id = is_request_id(given) ? given : request_id();
   current = {std::move(plain), steady_clock::now()};
 }
 

@@ -53,8 +53,8 @@ void put(EventStream stream, const std::string& id, const SocketServer& server,
           sink.done();
           return true;
         }
-        if (events->empty()) return connection.client_listens();
-        return sink.write(events->data(), events->size());
+        if (events->empty()) return connection.flush() && connection.client_listens();
+        return sink.write(events->data(), events->size()) && connection.flush();
       });
 }
 

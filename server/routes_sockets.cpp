@@ -41,10 +41,10 @@ SocketServer::SocketServer(const HttpOptions& options,
       connections_(options.connections),
       transfers_(options.transfers),
       rules_{transfers_, options.transfer_timeout, stopping_},
-      pool_(options.threads, [this](auto connection) { serve(std::move(connection)); }),
-      lobby_(
-          {options.header_timeout, options.idle_timeout},
-          [this](auto connection) { pool_.add(std::move(connection)); }, refusal_) {
+      lobby_({options.header_timeout, options.idle_timeout}, refusal_),
+      pool_(
+          options.threads, [this] { return lobby_.next(); },
+          [this](auto connection) { serve(std::move(connection)); }) {
   // The server deletes it.
   new_task_queue = [this] {
     return new AtOnce([this] { close_all(); });  // NOLINT(cppcoreguidelines-owning-memory)
@@ -77,6 +77,7 @@ void SocketServer::serve(std::unique_ptr<Connection> connection) {
   bool whole = false;
   try {
     whole = process_request(stream, stopping_, ends, nullptr);
+    whole = connection->flush() && whole;
   } catch (const std::exception& error) {
     spdlog::error("a connection failed: {}", error.what());
   }

@@ -44,8 +44,8 @@ class SocketServer : public httplib::Server {
   std::atomic<bool> stopping_ = false;
   Places connections_, transfers_;
   ConnectionRules rules_;
-  ThreadPool pool_;
   Lobby lobby_;
+  ThreadPool pool_;
 };
 
 }  // namespace translucube::server

@@ -52,7 +52,7 @@ HttpResponse list_sweeps(Endpoints& endpoints, const HttpRequest& request, const
 }
 
 HttpResponse get_sweep(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
-  return status_response(endpoints, request, [&] { return endpoints.service.get_sweep(ids.id); });
+  return status_response(endpoints, request, [&] { return endpoints.service.tell_sweep(ids.id); });
 }
 
 HttpResponse cancel_sweep(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {

@@ -1,50 +1,45 @@
 #include "server/thread_pool.h"
 
 #include <system_error>
+#include <utility>
 
 namespace translucube::server {
 
-ThreadPool::ThreadPool(int most, std::function<void(std::unique_ptr<Connection>)> serve)
-    : most_(static_cast<std::size_t>(most)), serve_(std::move(serve)) {}
+ThreadPool::ThreadPool(int most, Next next, Serve serve)
+    : most_(static_cast<std::size_t>(most)), next_(std::move(next)), serve_(std::move(serve)) {
+  const std::lock_guard lock(mutex_);
+  add_thread();
+}
 
 ThreadPool::~ThreadPool() { close(); }
 
-void ThreadPool::add(std::unique_ptr<Connection> connection) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (closed_) return;
-    queue_.push_back(std::move(connection));
-    if (queue_.size() > idle_ && threads_.size() < most_) try {
-        threads_.emplace_back([this] { run(); });
-      } catch (const std::system_error&) {
-        // The machine has no more threads: those that are there take it, unless there is none.
-        if (threads_.empty()) throw;
-      }
-  }
-  added_.notify_one();
+void ThreadPool::add_thread() {
+  threads_.emplace_back([this] { run(); });
+  ++waiting_;
 }
 
 void ThreadPool::close() {
+  std::vector<std::jthread> threads;
   {
     const std::lock_guard lock(mutex_);
     closed_ = true;
+    threads.swap(threads_);
   }
-  added_.notify_all();
-  threads_.clear();
 }
 
 void ThreadPool::run() {
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    ++idle_;
-    added_.wait(lock, [this] { return closed_ || !queue_.empty(); });
-    --idle_;
-    if (queue_.empty()) return;
-    auto connection = std::move(queue_.front());
-    queue_.pop_front();
-    lock.unlock();
+  while (std::unique_ptr<Connection> connection = next_()) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (--waiting_ == 0 && threads_.size() < most_ && !closed_) try {
+          add_thread();
+        } catch (const std::system_error&) {
+          // The machine has no more threads: those that are there go on.
+        }
+    }
     serve_(std::move(connection));
-    lock.lock();
+    const std::lock_guard lock(mutex_);
+    ++waiting_;
   }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <condition_variable>
-#include <deque>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -12,26 +11,28 @@
 
 namespace translucube::server {
 
-/// Threads that serve connections, each as long as `serve` takes. They are made as they are needed,
-/// `most` at most, and stay.
+/// Threads that wait for connections and serve them, each as long as `serve` takes. They are made
+/// as they are needed, so that one waits while others serve, `most` at most, and stay.
 class ThreadPool {
  public:
-  ThreadPool(int most, std::function<void(std::unique_ptr<Connection>)> serve);
+  using Next = std::function<std::unique_ptr<Connection>()>;  ///< null: there will be no more
+  using Serve = std::function<void(std::unique_ptr<Connection>)>;
+
+  ThreadPool(int most, Next next, Serve serve);
   ~ThreadPool();
 
-  void add(std::unique_ptr<Connection> connection);
-  /// Serves what was added before, then ends the threads; what is added later is dropped.
+  /// Waits for all threads to see that there will be no more.
   void close();
 
  private:
+  void add_thread();
   void run();
 
   const std::size_t most_;
-  const std::function<void(std::unique_ptr<Connection>)> serve_;
+  const Next next_;
+  const Serve serve_;
   std::mutex mutex_;
-  std::condition_variable added_;
-  std::deque<std::unique_ptr<Connection>> queue_;
-  std::size_t idle_ = 0;
+  std::size_t waiting_ = 0;
   bool closed_ = false;
   std::vector<std::jthread> threads_;
 };

@@ -11,7 +11,7 @@ namespace translucube::server {
 // Leases run out and delayed tasks fall due without anyone saying so.
 constexpr std::chrono::milliseconds poll_interval(500);
 constexpr unsigned interactive_share = 3;  ///< interactive tasks for one of a batch
-constexpr int nice_of_workers = 10;
+constexpr int nicer_than_others = 10;
 
 WorkerPool::WorkerPool(Workshop workshop, int workers, std::function<void()> on_change)
     : workshop_(std::move(workshop)), on_change_(std::move(on_change)), workers_(workers) {
@@ -24,6 +24,12 @@ WorkerPool::~WorkerPool() { stop(); }
 void WorkerPool::stop() {
   for (std::jthread& thread : threads_) thread.request_stop();
   threads_.clear();  // joins
+}
+
+void WorkerPool::drain(std::chrono::milliseconds time) {
+  std::unique_lock lock(mutex_);
+  draining_ = true;
+  idle_.wait_for(lock, time, [this] { return busy_ == 0; });
 }
 
 void WorkerPool::wake() {
@@ -52,13 +58,16 @@ std::optional<Task> WorkerPool::claim(int worker, const std::string& in_hand) {
 void WorkerPool::work(int worker, std::stop_token stop) {
   // Per thread on Linux, and inherited by those that the renderer starts. Without the right to it
   // the work goes on.
-  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice_of_workers);
+  const auto self = static_cast<id_t>(::gettid());
+  ::setpriority(PRIO_PROCESS, self, ::getpriority(PRIO_PROCESS, self) + nicer_than_others);
   TaskRunner runner(workshop_);
   while (!stop.stop_requested()) {
     std::uint64_t seen = 0;
     {
       const std::lock_guard lock(mutex_);
+      if (draining_) break;
       seen = wakes_;
+      ++busy_;
     }
     std::optional<Task> task;
     try {
@@ -66,14 +75,16 @@ void WorkerPool::work(int worker, std::stop_token stop) {
     } catch (const StoreError& error) {
       spdlog::error("no task claimed: {}", error.what());
     }
-    if (task) {
+    if (task)
       run(runner, *task, stop);
-      continue;
-    }
-    runner.forget();
+    else
+      runner.put_down();
     std::unique_lock lock(mutex_);
+    if (--busy_ == 0) idle_.notify_all();
+    if (task) continue;
     awake_.wait_for(lock, stop, poll_interval, [&] { return wakes_ != seen; });
   }
+  runner.put_down();
 }
 
 void WorkerPool::run(TaskRunner& runner, const Task& task, std::stop_token stop) {

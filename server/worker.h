@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <map>
@@ -26,6 +27,8 @@ class WorkerPool {
 
   void wake();                           ///< there may be a task
   void stop_job(const std::string& id);  ///< stops the pass that is traced for it, if one is
+  /// Starts no pass; those under way may take `time` to end.
+  void drain(std::chrono::milliseconds time);
   void stop();  ///< stops all passes, gives their tasks back, waits for the threads
 
  private:
@@ -36,8 +39,10 @@ class WorkerPool {
   Workshop workshop_;
   std::function<void()> on_change_;
   std::mutex mutex_;
-  std::condition_variable_any awake_;
+  std::condition_variable_any awake_, idle_;
   std::uint64_t wakes_ = 0;
+  bool draining_ = false;
+  int busy_ = 0;  ///< workers that claim or work
   std::atomic<unsigned> turns_ = 0;
   int workers_;
   std::multimap<std::string, std::stop_source> running_;  ///< by job

@@ -92,6 +92,7 @@ TEST_F(Configuration, IsReadWhole) {
                       {"header_timeout_s", 9},
                       {"idle_timeout_s", 10},
                       {"transfer_timeout_s", 11},
+                      {"drain_s", 2},
                       {"log_format", "json"}};
   config["request_defaults"]["image"] = {{"width", 8}, {"height", 8}};
   config["request_defaults"]["quality"] = {{"samples", 4}};
@@ -117,6 +118,7 @@ TEST_F(Configuration, IsReadWhole) {
   EXPECT_EQ(catalog.server.header_timeout_s, 9);
   EXPECT_EQ(catalog.server.idle_timeout_s, 10);
   EXPECT_EQ(catalog.server.transfer_timeout_s, 11);
+  EXPECT_EQ(catalog.server.drain_s, 2);
   EXPECT_EQ(catalog.server.log_format, LogFormat::json);
   EXPECT_EQ(catalog.defaults.width, 8);
   EXPECT_EQ(catalog.defaults.quality, Quality(SampleTarget{4}));
@@ -157,6 +159,7 @@ TEST_F(Configuration, TheShippedServerSectionHoldsTheDefaults) {
   EXPECT_EQ(shipped.header_timeout_s, defaults.header_timeout_s);
   EXPECT_EQ(shipped.idle_timeout_s, defaults.idle_timeout_s);
   EXPECT_EQ(shipped.transfer_timeout_s, defaults.transfer_timeout_s);
+  EXPECT_EQ(shipped.drain_s, defaults.drain_s);
   EXPECT_EQ(shipped.queue_length, defaults.queue_length);
   EXPECT_EQ(shipped.interactive_seconds, defaults.interactive_seconds);
   EXPECT_EQ(shipped.artifact_bytes, defaults.artifact_bytes);

@@ -89,6 +89,27 @@ TEST(Redevelop, KeepsTheColourOfCoefficientsOfEachChannel) {
   EXPECT_THAT(rgb, ElementsAre(0.25, 1, 0.5));
 }
 
+TEST(Redevelop, TakesAnAbsorberThatHasNoName) {
+  const Redeveloped rgb = redeveloped(cube, {0.5, R"({"rgb":[0.2,1,1]})"});
+  EXPECT_THAT(std::get<RgbAbsorber>(rgb.absorption.absorber).relative, ElementsAre(0.2, 1, 1));
+  EXPECT_EQ(json::parse(rgb.request)["material"]["absorber"]["rgb"], json({0.2, 1, 1}));
+  const Redeveloped own = redeveloped(cube, {{}, R"({"wavelengths_nm":[400,700],"values":[1,0]})"});
+  EXPECT_THAT(std::get<SpectralAbsorber>(own.absorption.absorber).values, ElementsAre(1, 0));
+  const auto refused = [](const std::string& absorber) {
+    return fault_pointers(redevelop(canonical(cube), {{}, absorber}, catalog()));
+  };
+  EXPECT_THAT(refused(R"({"rgb":[0,0,0]})"), ElementsAre("?absorber/rgb"));
+  EXPECT_THAT(refused("{"), ElementsAre("?absorber"));
+  EXPECT_THAT(refused(R"({"rgb":[1,1,1],"rgb":[1,1,1]})"), ElementsAre("?absorber"));
+}
+
+TEST(Redevelop, OtherSamplesAreAnotherQuality) {
+  const std::string request = with_samples(canonical(cube), 12);
+  EXPECT_EQ(json::parse(request)["quality"], (json{{"samples", 12}}));
+  const auto parsed = parse_render_request(request, catalog());
+  EXPECT_EQ(canonical_json(std::get<RenderRequest>(parsed)), request);
+}
+
 TEST(Redevelop, RefusesWhatItDoesNotKnow) {
   const std::string request = canonical(cube);
   EXPECT_THAT(fault_pointers(redevelop(request, {1.5, "nothing"}, catalog())),

@@ -73,12 +73,20 @@ TEST(AccessTest, PagesOfOtherOriginsMayNotPost) {
     EXPECT_EQ(post({{"origin", "http://evil.example"}}, method), 0) << method;
 }
 
-TEST(AccessTest, EverythingButTheProbesNeedsATokenWhereThereAreSome) {
+TEST(AccessTest, EverythingButTheProbesAndThePageNeedsATokenWhereThereAreSome) {
   const AccessPolicy policy = with_tokens();
   for (const char* path : {"/livez", "/readyz"})
     EXPECT_EQ(refused(policy, request("GET", {{"host", "10.0.0.7:80"}}, path)), 0);
-  for (const char* path : {"/metrics", "/openapi.json", "/v1/renders", "/livez/", "/", "//livez"})
+  for (const char* path :
+       {"/metrics", "/openapi.json", "/v1/renders", "/livez/", "//", "/web", "//livez"})
     EXPECT_EQ(refused(policy, request("GET", {}, path)), 401) << path;
+  for (const char* path : {"/", "/web/app.js"}) {
+    EXPECT_EQ(refused(policy, request("GET", {}, path)), 0) << path;
+    EXPECT_EQ(refused(policy, request("POST", {}, path)), 401) << path;
+    EXPECT_EQ(
+        refused({true, policy.tokens, {}, {}}, request("GET", {{"host", "evil.example"}}, path)),
+        421);
+  }
   const auto with = [&](const std::string& credentials) {
     return refused(policy, request("GET", {{"authorization", credentials}}));
   };

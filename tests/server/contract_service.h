@@ -12,10 +12,10 @@ namespace translucube::server::test {
 /// An id that no service ever gave.
 inline const std::string no_such_id = "01ARZ3NDEKTSV4RRFFQ69G5FAV";
 
-/// The pattern with an id, and the point 0, in its places.
+/// The pattern with an id, the point 0 and a file of the explorer in its places.
 inline std::string path_of(std::string pattern, const std::string& id) {
   for (const auto& [place, text] :
-       {std::pair<std::string, std::string>{"{id}", id}, {"{point}", "0"}})
+       {std::pair<std::string, std::string>{"{id}", id}, {"{point}", "0"}, {"{file}", "style.css"}})
     if (const auto at = pattern.find(place); at != pattern.npos)
       pattern.replace(at, place.size(), text);
   return pattern;

@@ -30,10 +30,13 @@ void provoke_at_the_door(Contract& contract) {
   Caller at_guarded(contract, guarded.port()), at_failing(contract, failing.port()),
       at_crowded(contract, crowded.server.port());
   for (const Operation& operation : contract.operations()) {
-    const bool probe = operation.description.contains("security");
-    if (!probe) {
+    const bool open = operation.description.contains("security");
+    if (!open) {
       at_guarded.call(operation.id, 401);
       at_guarded.call(operation.id, 401, no_such_id, "", {{"Authorization", "Bearer other"}});
+    }
+    const bool probe = operation.id == "live" || operation.id == "ready";
+    if (!probe) {
       at_guarded.call(operation.id, 421, no_such_id, "", {{"Host", "evil.example"}});
       if (operation.changes_something())
         at_guarded.call(operation.id, 403, no_such_id, "", {{"Origin", "http://evil.example"}});
@@ -64,6 +67,9 @@ void provoke_everywhere(Contract& contract) {
         idle.caller.call(operation.id, 304, "", "", {{"If-None-Match", answer.header("ETag")}});
     }
   }
+  const Answer none = idle.caller.send("GET", "/web/../service.json");
+  EXPECT_EQ(none.status, 404);
+  idle.caller.call("explorerFile", 404, "", "x");
   idle.service.service.shut_down();
   for (const char* id : {"createRender", "createSweep"})
     idle.caller.call(id, 503, "", "", {},
@@ -152,8 +158,10 @@ void provoke_images(Contract& contract) {
   busy.caller.call("getPointImage", 409, sweep, "?absorber=amber");
 
   // Removed to make room.
-  for (const StoredResult& result : busy.service.store.least_recently_used(1 << 30))
+  for (const StoredResult& result : busy.service.store.least_recently_used(1 << 30)) {
     EXPECT_TRUE(busy.service.store.remove_result(result));
+    remove_files(busy.service.artifacts, result);
+  }
   busy.caller.call("getImage", 410, render);
   busy.caller.call("getPointImage", 410, sweep);
 

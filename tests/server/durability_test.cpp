@@ -273,7 +273,9 @@ TEST(DurabilityTest, LeasesWhoseClockJumpsAreTakenOverAndNothingCountsTwice) {
   SlowRenderer renderer;
   ServiceOptions options;
   options.workers = 2;
-  options.store.lease_clock = [&] { return monotonic_clock_ms() + ahead; };
+  // Far enough from zero to go back by hours on a machine that has just started.
+  constexpr std::int64_t days = 100 * 86'400'000LL;
+  options.store.lease_clock = [&] { return monotonic_clock_ms() + days + ahead; };
   TestService tested(folder.path(), renderer.engine(), options);
   const std::string id = tested.submit(long_request).id;
   for (int i = 1; i <= 8; ++i) {

@@ -120,6 +120,32 @@ TEST(JobServiceTest, WaitingEndsWithTheRenderWithTheTimeOrWithTheService) {
   EXPECT_TRUE(tested.service.unready_reason());
 }
 
+TEST(JobServiceTest, WhatIsRememberedOfARenderGoesWithIt) {
+  const TempFolder folder;
+  FakeRenderer renderer;
+  TestService tested(folder.path(), renderer.engine());
+  const std::string id = tested.wait(tested.submit(small_request(4)).id).id;
+  const auto json = [&] { return std::get<ToldText>(tested.service.tell(id))->json; };
+  EXPECT_EQ(json(), to_json(std::get<api::RenderStatus>(tested.service.get(id))));
+  EXPECT_EQ(json(), json());
+  EXPECT_EQ(tested.exr(id), tested.exr(id));
+  EXPECT_EQ(tested.service.remove(id), std::nullopt);
+  EXPECT_EQ(code_of(tested.service.tell(id)), ProblemCode::not_found);
+  EXPECT_EQ(code_of(tested.service.image(id, {})), ProblemCode::not_found);
+}
+
+TEST(JobServiceTest, WhatIsToldOfARenderThatGoesOnIsNotRemembered) {
+  const TempFolder folder;
+  FakeRenderer renderer;
+  TestService tested(folder.path(), renderer.engine());
+  renderer.milliseconds_per_pass = 50;
+  const std::string id = tested.submit(small_request(40)).id;
+  const auto now = [&] { return std::get<ToldText>(tested.service.tell(id)); };
+  const std::string first = now()->etag;
+  EXPECT_TRUE(eventually([&] { return now()->state == JobState::succeeded; }));
+  EXPECT_NE(now()->etag, first);
+}
+
 TEST(JobServiceTest, AStoppedServiceGivesItsTasksBack) {
   const TempFolder folder;
   FakeRenderer renderer;
@@ -134,6 +160,24 @@ TEST(JobServiceTest, AStoppedServiceGivesItsTasksBack) {
   const std::optional<Task> task = tested.store.claim(Priority::interactive);
   ASSERT_TRUE(task);
   EXPECT_EQ(task->attempts, 1) << "a task that was given back was not attempted";
+}
+
+TEST(JobServiceTest, AServiceThatDrainsIsNotReadyAndKeepsThePassUnderWay) {
+  const TempFolder folder;
+  FakeRenderer renderer;
+  TestService tested(folder.path(), renderer.engine());
+  renderer.milliseconds_per_pass = 300;
+  const std::string id = tested.submit(small_request(1000)).id;
+  ASSERT_TRUE(eventually([&] { return renderer.tracing == 1; }));
+  std::jthread stopper([&] { tested.service.shut_down(std::chrono::seconds(60)); });
+  ASSERT_TRUE(eventually([&] { return tested.service.stopping(); }));
+  EXPECT_TRUE(tested.service.unready_reason());
+  EXPECT_EQ(renderer.passes, 0) << "it is not ready while the pass goes on";
+  const auto start = std::chrono::steady_clock::now();
+  stopper.join();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+  EXPECT_EQ(renderer.passes, 1) << "no pass was begun";
+  EXPECT_EQ(tested.store.find(id)->progress.passes, 1u);
 }
 
 TEST(JobServiceTest, WorkersTraceDifferentRendersAtOnceAndOneRendersPassesInOrder) {

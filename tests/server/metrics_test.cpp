@@ -79,7 +79,9 @@ TEST(MetricsTest, StreamsAreCountedWhileTheyAreOpen) {
 TEST(MetricsTest, EveryNameHasItsHelpAndType) {
   Metrics metrics;
   metrics.count_request("GET", "/livez", 200, 0.1);
-  metrics.set_store_gauges([] { return StoreGauges{{{"queued", 1}}, {{"queued", 1}}, {{"batch", 1}}, 1, 1}; });
+  metrics.set_store_gauges([] {
+    return StoreGauges{{{"queued", 1}}, {{"queued", 1}}, {{"batch", 1}}, 1, 1};
+  });
   std::istringstream lines(metrics.text());
   std::set<std::string> helped, typed;
   for (std::string line; std::getline(lines, line);) {
@@ -142,7 +144,8 @@ TEST(LogTest, NoValueBreaksOutOfItself) {
             R"( path="/a b=\"c\\\"\x0a\x1b[2J level=error\x7f\xc3\xa9")");
   EXPECT_EQ(log_text(api::LogFormat::json, fields),
             R"(,"path":"/a b=\"c\\\"\u000a\u001b[2J level=error\u007f\u00c3\u00a9")");
-  EXPECT_LT(log_text(api::LogFormat::logfmt, {{"path", std::string(100'000, 'a')}}).size(), 600u);
+  const std::string long_path(100'000, 'a');
+  EXPECT_LT(log_text(api::LogFormat::logfmt, {{"path", long_path}}).size(), 600u);
 }
 
 }  // namespace

@@ -166,6 +166,31 @@ TEST(ProcessTest, ATerminationEndsStreamsAndTheRenderHasTheBitsOfAnUndisturbedOn
   EXPECT_EQ(pixels(folder / "served.exr"), pixels(folder / "alone.exr"));
 }
 
+TEST(ProcessTest, AServiceThatDrainsIsNotReadyAndStillAnswers) {
+  const TempFolder folder;
+  Service service(folder / "data");
+  // A pass of it takes about a second.
+  const auto posted =
+      service.client().Post("/v1/renders", small_request(100'000, 1, 1024), "application/json");
+  const std::string location = posted->get_header_value("Location");
+  ASSERT_TRUE(eventually([&] { return service.get(location)["progress"]["samples"] > 0; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // amid the next
+  const auto start = std::chrono::steady_clock::now();
+  service.process().kill(SIGTERM);
+  ASSERT_TRUE(eventually([&] {
+    const auto ready = service.client().Get("/readyz");
+    return !ready || ready->status == 503;
+  }));
+  ASSERT_TRUE(service.client().Get("/livez"));
+  EXPECT_EQ(service.get(location)["state"], "running");
+  const auto refused = service.client().Post("/v1/renders", small_request(4), "application/json");
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->status, 503);
+  EXPECT_FALSE(refused->get_header_value("Retry-After").empty());
+  EXPECT_EQ(service.process().wait(), 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+}
+
 TEST(ProcessTest, AServiceThatCannotStartSaysWhyAndEnds) {
   const TempFolder folder;
   Service service(folder / "data");

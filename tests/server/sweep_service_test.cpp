@@ -89,8 +89,9 @@ TEST(SweepServiceTest, WhatIsThereIsNotRenderedAgain) {
   Tested tested(renderer.engine());
   const api::SweepStatus first = tested.wait(tested.submit(sweep_request(4, some_axes)).id);
   const int passes = renderer.passes;
-  const api::SweepStatus again = tested.wait(tested.submit(sweep_request(4, some_axes)).id);
-  EXPECT_EQ(again.state, JobState::succeeded);
+  const api::SweepStatus again = tested.submit(sweep_request(4, some_axes));
+  EXPECT_EQ(again.state, JobState::succeeded) << "at once";
+  EXPECT_TRUE(again.finished_at);
   EXPECT_TRUE(std::ranges::all_of(again.images, &api::SweepImageStatus::cached));
   const api::RenderStatus point =
       tested.service.submit(canonical_json(api::point_request(first.sweep, 3)));
@@ -98,6 +99,48 @@ TEST(SweepServiceTest, WhatIsThereIsNotRenderedAgain) {
   EXPECT_TRUE(point.cached);
   EXPECT_EQ(tested.service.exr(point.id), tested.exr(first.id, 3));
   EXPECT_EQ(renderer.passes, passes);
+}
+
+TEST(SweepServiceTest, OfWhatIsPartlyThereTheRestIsRendered) {
+  FakeRenderer renderer;
+  Tested tested(renderer.engine());
+  tested.wait(tested.submit(sweep_request(4, some_axes)).id);
+  const int builds = renderer.builds;
+  const api::SweepStatus more = tested.submit(
+      sweep_request(4, R"({"absorption":[0,0.5,1],"roughness":[0,0.5,0.9],"scattering":[0.4]})"));
+  EXPECT_EQ(more.state, JobState::running) << "some points are there";
+  const api::SweepStatus ended = tested.wait(more.id);
+  EXPECT_EQ(ended.state, JobState::succeeded);
+  EXPECT_EQ(renderer.builds, builds + 1);
+  EXPECT_EQ(std::ranges::count_if(ended.images, &api::SweepImageStatus::cached), 2);
+  const auto told =
+      std::get<JobService::Events>(tested.service.service.events_of_sweep(more.id, 0));
+  EXPECT_EQ(told.events.at(0).type, "state");
+  EXPECT_EQ(told.events.at(1).type, "points");
+  EXPECT_EQ(json::parse(told.events.at(1).data)["points"].size(), 6u);
+  EXPECT_EQ(json::parse(told.events.back().data)["state"], "succeeded");
+}
+
+TEST(SweepServiceTest, WhatIsThereNeedsNoRoomInTheQueue) {
+  const TempFolder folder;
+  FakeRenderer renderer;
+  ServiceOptions options;
+  options.store.most_queued = 2;
+  TestService service(folder.path(), renderer.engine(), options);
+  const auto submit = [&](const std::string& document) {
+    return service.service.submit_sweep(document, std::nullopt);
+  };
+  const auto first = std::get<SweepSubmission>(submit(sweep_request(4, some_axes))).status.id;
+  service.service.watch(std::chrono::seconds(120), [&] {
+    return is_end(std::get<api::SweepStatus>(service.service.get_sweep(first)).state);
+  });
+  renderer.milliseconds_per_pass = 60'000;
+  service.submit(small_request(4, 2));
+  service.submit(small_request(4, 3));
+  EXPECT_TRUE(std::holds_alternative<api::Problem>(submit(sweep_request(8, some_axes))));
+  const auto again = submit(sweep_request(4, some_axes));
+  ASSERT_TRUE(std::holds_alternative<SweepSubmission>(again));
+  EXPECT_EQ(std::get<SweepSubmission>(again).status.state, JobState::succeeded);
 }
 
 TEST(SweepServiceTest, APointWhoseSamplesAnotherDecidedIsNotTakenForARenderAlone) {
@@ -233,6 +276,23 @@ TEST(SweepServiceTest, WhatWasAcceptedIsToldWhateverTheLimitsAreNow) {
   const api::SweepStatus accepted = tested.submit(sweep_request(4, some_axes));
   tested.service.catalog.limits = {10, 1, 1, 1, 1, 1};
   EXPECT_EQ(to_json(tested.get(accepted.id)), to_json(accepted));
+}
+
+TEST(SweepServiceTest, WhatWasAcceptedIsTracedWhateverTheLimitsAreNow) {
+  FakeRenderer renderer;
+  Tested tested(renderer.engine(), {0, {}});
+  JobStore& store = tested.service.store;
+  const api::RenderStatus render = tested.service.submit(small_request(40));
+  const api::SweepStatus sweep = tested.submit(sweep_request(4, some_axes));
+  api::Catalog narrow = tested.service.catalog;
+  narrow.limits = {10, 1, 1, 1, 1, 1};
+  const auto traced = traced_job(*store.find(render.id), store, narrow);
+  ASSERT_TRUE(std::holds_alternative<TracedJob>(traced));
+  EXPECT_EQ(std::get<TracedJob>(traced).pixels(), 64u);
+  const auto image =
+      traced_job(*store.find(store.sweep_images(sweep.id).at(0).job_id), store, narrow);
+  ASSERT_TRUE(std::holds_alternative<TracedJob>(image));
+  EXPECT_EQ(std::get<TracedJob>(image).requests.size(), 3u);
 }
 
 TEST(SweepServiceTest, TheLeastRecentlyUsedPicturesMakeRoom) {

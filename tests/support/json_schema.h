@@ -3,7 +3,7 @@
 // JSON Schema 2020-12, as far as the OpenAPI document uses it. Debian's libraries for C++ know
 // older drafts only.
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -4,7 +4,7 @@
 
 namespace translucube::speed {
 
-/// The ceilings that tests/renderer/efficiency_test.cpp holds the renderer to, as JSON text:
+/// The ceilings that tests/transport/efficiency_test.cpp holds the renderer to, as JSON text:
 /// measured now, with room for chance.
 std::string guard();
 

@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
       ->check(CLI::ExistingFile);
   app.add_option(
       "--write-guard", guard_file,
-      "nothing but this: writes tests/renderer/efficiency.json, the ceilings of variance "
+      "nothing but this: writes tests/transport/efficiency.json, the ceilings of variance "
       "and counted work");
   // What sections ask of a process of its own.
   std::vector<int> film;

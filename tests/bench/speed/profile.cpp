@@ -266,7 +266,7 @@ Table one_by_one(Run& run) {
   measure_batch("way out of a smooth connection (SIMD)", ExitBatch::capacity, [&] {
     exits->size = 0;
     while (exits->size < ExitBatch::capacity)
-      exits->push(0.9 * sample_isotropic(rng), 0.9, sample_isotropic(rng), sample_isotropic(rng),
+      exits->push(0.9 * sample_isotropic(rng), 0.19, sample_isotropic(rng), sample_isotropic(rng),
                   0.1);
     find_exits({1.5f, 10.0f, 0.0f}, ExitBranch::near, Division::balanced, *exits);
     sink = exits->share[7];

@@ -104,8 +104,9 @@ TEST(SphereExits, ManyAtATimeAreTheSameAsOne) {
           places.push_back((1 - depth) * random_direction(rng));
           before.push_back(random_direction(rng));
           lights.push_back(random_direction(rng));
-          batch->push(places[i], 1 - depth, before[i], lights[i], 0.1);
+          batch->push(places[i], depth * (2 - depth), before[i], lights[i], 0.1);
         }
+        find_minima({float(ior)}, *batch);
         find_exits({float(ior), float(medium.sigma_s), float(g)}, branch, Division::balanced,
                    *batch);
         int not_found = 0, differ = 0;
@@ -146,7 +147,7 @@ void fill(ExitBatch& batch, double rho, Rng& rng) {
     batch.choice[i] = static_cast<float>(rng.uniform());
     batch.drawn[i] = static_cast<float>(rng.uniform());
     batch.turn[i] = static_cast<float>(rng.uniform());
-    batch.push(p, rho, random_direction(rng), {}, 1);
+    batch.push(p, 1 - rho * rho, random_direction(rng), {}, 1);
   }
 }
 
@@ -243,7 +244,7 @@ TEST(SphereExits, InstructionSetsDifferByRoundingAlone) {
   auto batch = std::make_unique<ExitBatch>();
   for (std::size_t i = 0; i < ExitBatch::capacity; ++i) {
     const double depth = 0.001 + 0.9 * rng.uniform();
-    batch->push((1 - depth) * random_direction(rng), 1 - depth, random_direction(rng),
+    batch->push((1 - depth) * random_direction(rng), depth * (2 - depth), random_direction(rng),
                 random_direction(rng), 0.1);
   }
   for (const ExitBranch branch : all_branches) {
@@ -251,6 +252,7 @@ TEST(SphereExits, InstructionSetsDifferByRoundingAlone) {
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
       hwy::SetSupportedTargetsForTest(target);
       hwy::GetChosenTarget().DeInit();
+      find_minima({1.5f}, *batch);
       find_exits({1.5f, 2, 0.3f}, branch, Division::balanced, *batch);
       shares[hwy::TargetName(target)] = batch->share;
       hwy::SetSupportedTargetsForTest(0);

@@ -1,15 +1,12 @@
-// Explorable renders against renders with exact lanes of the same paths, and their files.
+// Explorable renders against renders with exact lanes of the same paths.
 
 #include "renderer/explorable.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <numeric>
 
-#include "renderer/half.h"
-#include "renderer/image_io.h"
 #include "renderer/material_cube.h"
 #include "tests/support/absorbers.h"
 #include "tests/support/explorable_error.h"
@@ -17,8 +14,6 @@
 
 namespace translucube {
 namespace {
-
-// ---- rendered
 
 struct CubeAbsorption {
   Absorber absorber;
@@ -99,6 +94,23 @@ TEST(ExplorableFilm, HasThePictureAndTheErrorOfTheClearBody) {
   for (std::size_t i = 0; i < spread.pixels.size(); ++i)
     ASSERT_NEAR(spread.pixels[i], expected_spread.pixels[i],
                 1e-3 * expected_spread.pixels[i] + 1e-9);
+}
+
+TEST(ExplorableFilm, ThatIsStillBeingTracedDevelopsLikeOneThatIsKept) {
+  SceneSpec spec = sphere(0.3, 0.5);
+  spec.explorable = Explorable{37 / reference_mm};
+  const auto scene = build_scene(spec);
+  const Film film = explorable_render(sphere(0.3, 0.5), 8);
+  const ExplorableFilm kept = explorable_film(*scene, film);
+  const auto expect_alike = [](const Image& a, const Image& b) {
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+      ASSERT_NEAR(a.pixels[i], b.pixels[i], 1e-3 * b.pixels[i] + 1e-5) << i;
+  };
+  expect_alike(develop_shares(*scene, film), develop_explorable(kept, *scene));
+  for (const Absorption& a : five_absorbers())
+    expect_alike(develop_shares(*scene, film, a.absorber, a.sigma_a_peak),
+                 develop_explorable(kept, a.absorber, a.sigma_a_peak));
 }
 
 TEST(ExplorableFilm, SurvivesItsCheckpoint) {
@@ -186,84 +198,6 @@ TEST(LanesOfSeveralAbsorptions, MayHaveAnInfiniteOneAmongThem) {
   const Image other = develop(film, 1);
   EXPECT_GT(std::accumulate(other.pixels.begin(), other.pixels.end(), 0.0),
             1.1 * std::accumulate(lane.pixels.begin(), lane.pixels.end(), 0.0));
-}
-
-// ---- stored
-
-struct TempFile {
-  std::filesystem::path path =
-      std::filesystem::temp_directory_path() /
-      ("translucube-explorable-" +
-       std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "-" +
-       std::to_string(reinterpret_cast<std::uintptr_t>(this)) + ".exr");
-  ~TempFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path, ignored);
-  }
-};
-
-ExplorableFilm rendered() {
-  SceneSpec spec = sphere(0.3, 0.7);
-  spec.width = 37;
-  spec.height = 21;
-  spec.explorable = Explorable{3.7};
-  const auto scene = build_scene(spec);
-  return explorable_film(*scene, render(*scene, SampleTarget{4}, 1).film);
-}
-
-TEST(StoredExplorableFilm, ReadsBackTheSameBits) {
-  const TempFile file;
-  const ExplorableFilm film = rendered();
-  write_explorable(file.path, film, R"({"seed":7})");
-  const StoredExplorable read = read_explorable(file.path);
-  EXPECT_EQ(read.request, R"({"seed":7})");
-  EXPECT_EQ(read.film.bins, film.bins);
-  EXPECT_EQ(read.film.unit_mm, film.unit_mm);
-  EXPECT_EQ(read.film.scales, film.scales);
-  EXPECT_EQ(read.film.width, 37);
-  EXPECT_EQ(read.film.halves, film.halves);
-}
-
-TEST(StoredExplorableFilm, HoldsSunsAndDimLightAtOnce) {
-  SceneSpec spec = sphere(0, 0);
-  spec.explorable = Explorable{3.7};
-  const auto scene = build_scene(spec);
-  Film film(8, 8, scene->film_lanes(), true);
-  film.samples = 1;
-  const std::size_t lane = 3 * 64;
-  for (int bin = 0; bin < film.lanes; ++bin) film.sum[bin * lane] = 1e6f;  // beyond half's 65504
-  for (int bin = 0; bin < film.lanes; ++bin) film.sum[bin * lane + 5] = 1.7f;
-  std::fill(film.sum.begin() + 9 * lane, film.sum.begin() + 10 * lane, 3e-12f);  // a dim bin
-  const ExplorableFilm halves = explorable_film(*scene, film);
-  const auto value = [&](int bin, int channel, int pixel) {
-    return halves.scales[bin] * half_to_float(halves.halves[(3 * bin + channel) * 64 + pixel]);
-  };
-  EXPECT_NEAR(value(4, 0, 0), 1e6, 1e6 / 2048);
-  EXPECT_NEAR(value(4, 2, 1), 1.7, 1.7 / 2048);
-  EXPECT_NEAR(value(9, 1, 30), 3e-12, 3e-12 / 2048);
-}
-
-TEST(StoredExplorableFilm, RefusesOtherFiles) {
-  const TempFile file;
-  EXPECT_THROW(read_explorable(file.path), ImageError);
-  write_image(file.path, Image(4, 4), ImageFormat::exr, {"", "lin_rec709"});
-  EXPECT_THROW(read_explorable(file.path), ImageError);
-  const ExplorableFilm film = rendered();
-  HalfImage image{film.width, film.height, {"R", "G", "B"}, {}};
-  write_half_image(file.path, image,
-                   {film.halves.begin(), film.halves.begin() + 3 * film.width * film.height});
-  EXPECT_THROW(read_explorable(file.path), ImageError);
-  write_explorable(file.path, film, "{}");
-  std::filesystem::resize_file(file.path, std::filesystem::file_size(file.path) / 2);
-  EXPECT_THROW(read_explorable(file.path), ImageError);
-}
-
-TEST(StoredExplorableFilm, RefusesHalvesThatAreNotFinite) {
-  const TempFile file;
-  ExplorableFilm film = rendered();
-  film.halves[1000] = 0x7c00;
-  write_explorable(file.path, film, "{}");
-  EXPECT_THROW(read_explorable(file.path), ImageError);
 }
 
 }  // namespace

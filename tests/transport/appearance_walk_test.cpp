@@ -74,7 +74,8 @@ TEST(DenseWhiteSlab, TransmitsAsDiffusionSays) {
   // Matched index, diffuse incidence, isotropic: T -> (4/3) / (tau + 2 x 0.71045) (van de Hulst
   // 1980, chapter 9, with Milne's extrapolation length).
   const SlabAppearance s = measure(plate(1, 0, 100), 1e-4);
-  EXPECT_NEAR(transmittance(s.diffuse), 4.0 / 3 / (100 + 2 * 0.7104460896), 4.5 * transmittance_error(s.diffuse));
+  EXPECT_NEAR(transmittance(s.diffuse), 4.0 / 3 / (100 + 2 * 0.7104460896),
+              4.5 * transmittance_error(s.diffuse));
   EXPECT_LT(transmittance_error(s.diffuse), 1.01e-4);
 }
 

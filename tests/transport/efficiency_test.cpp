@@ -1,5 +1,5 @@
 // Speed is guarded without a clock: neither the variance nor the counted work of a camera sample
-// may rise above what is written down. `speed --write-guard tests/renderer/efficiency.json` writes
+// may rise above what is written down. `speed --write-guard tests/transport/efficiency.json` writes
 // it again, after a change that is meant.
 
 #include "tests/support/efficiency.h"
@@ -13,7 +13,7 @@ namespace translucube::test {
 namespace {
 
 TEST(Efficiency, OfThePeersMaterialsIsNoLessThanWrittenDown) {
-  std::ifstream file(TRANSLUCUBE_SOURCE_DIR "/tests/renderer/efficiency.json");
+  std::ifstream file(TRANSLUCUBE_SOURCE_DIR "/tests/transport/efficiency.json");
   const nlohmann::json written = nlohmann::json::parse(file);
   for (const PeerMaterial& material : peer_materials)
     for (const Measure& measure : efficiency(material, 0)) {

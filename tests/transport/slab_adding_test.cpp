@@ -79,8 +79,7 @@ TEST(Adding, AgreesWithWalks) {
 TEST(LongAdding, AgreesWithWalks) {
   for (const double alpha : {0.0, 0.1, 1.0})
     for (const double ior : {1.01, 1.5, 2.5})
-      for (const double g : {-0.5, 0.5, 0.9})
-        expect_walks(grey(ior, alpha, 10, 0.3, g), 500'000);
+      for (const double g : {-0.5, 0.5, 0.9}) expect_walks(grey(ior, alpha, 10, 0.3, g), 500'000);
 }
 
 TEST(Adding, LeavesToWalksWhatItDoesNotResolve) {
