@@ -311,9 +311,11 @@ std::vector<EnvironmentSample> ImageEnvironment::sample(std::span<const Sample2>
       batch.v[i] = at.y;
     }
     batch.find(geometry());
-    for (std::size_t i = 0; i < batch.size; ++i)
-      samples[first + i] = {{batch.x[i], batch.y[i], batch.z[i]},
-                            value_at({batch.u[i], batch.v[i], batch.sin_theta[i]})};
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      const Vec3 towards{batch.x[i], batch.y[i], batch.z[i]};
+      samples[first + i] = {towards,
+                            seen(towards, value_at({batch.u[i], batch.v[i], batch.sin_theta[i]}))};
+    }
   }
   return samples;
 }

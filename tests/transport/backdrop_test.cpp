@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/support/truths.h"
 
@@ -192,6 +193,23 @@ TEST(Environment, ShowsAndFindsItsFrontAlone) {
     const Vec3 d = sample_isotropic(rng);
     EXPECT_EQ(luminance(front.value_from(d).radiance) > 0, d.z >= 0);
   }
+}
+
+TEST(Environment, DrawsItsFrontAsBrightAsItIs) {
+  const ImageEnvironment front = white_front();
+  Rng rng(4);
+  double one = 0, many = 0;
+  constexpr int n = 100'000;
+  std::vector<Sample2> numbers;
+  for (int i = 0; i < n; ++i) numbers.push_back({(i + rng.uniform()) / n, rng.uniform()});
+  for (const EnvironmentSample& light : front.sample(numbers))
+    many += double(light.value.radiance.r) / light.value.pdf / n;
+  for (const Sample2& u : numbers) {
+    const EnvironmentSample light = front.sample(u);
+    one += double(light.value.radiance.r) / light.value.pdf / n;
+  }
+  EXPECT_NEAR(one / (2 * std::numbers::pi), 1, 5e-3);
+  EXPECT_NEAR(many / (2 * std::numbers::pi), 1, 5e-3);
 }
 
 }  // namespace

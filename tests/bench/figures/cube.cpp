@@ -20,7 +20,7 @@ struct Dot {
 
 /// Where a point of the unit cube is on the page.
 Dot project(Vec3 p) {
-  constexpr double yaw = -0.45, pitch = 0.32, distance = 4.6, zoom = 1750;
+  constexpr double yaw = -0.45, pitch = 0.32, distance = 4.6, zoom = 1450;
   const Vec3 q = p - Vec3{0.5, 0.5, 0.5};
   const double x = std::cos(yaw) * q.x - std::sin(yaw) * q.z;
   const double away = std::sin(yaw) * q.x + std::cos(yaw) * q.z;
@@ -145,10 +145,11 @@ Image draw_cube(const Figure& figure, const Pictures& pictures, const SheetLook&
     const Dot at = project({-0.19, share(int(i), layers.labels.size()), 0});
     page.text(layers.labels[i], at.x, at.y, 0.5);
   }
-  const Dot x = project({0.5, -0.3, 0}), y = project({-0.1, 1.3, 0}), z = project({1.33, 0, 0.5});
+  const Dot x = project({0.5, -0.3, 0}), y = project({-0.1, 1.3, 0}),
+            z = project({1.5, -0.05, 0.5});
   page.text(columns.title, x.x, x.y, 0.5);
   page.text(layers.title, y.x, y.y, 0.2);
-  page.text(rows.title, std::min(z.x, double(width) - 8), z.y, 0.5);
+  page.text(rows.title, std::fmin(z.x, width - 70.0), z.y + 22, 0.5);
   return page.take();
 }
 
