@@ -250,8 +250,9 @@ TEST(EndpointsTest, NotReadyWhereTheDiskRefuses) {
 
 TEST(EndpointsTest, UnknownPathsAndWrongMethodsAreTold) {
   Tested tested(0);
-  for (const char* path : {"/", "", "/v1", "/v1/renders/", "/v1/renders/..%2f", "/v1/renders/x/y",
-                           "/v1/renders/../../etc/passwd", "/v1/rendersx", "/v1/renders/x\n"})
+  for (const char* path :
+       {"", "/web/", "/web/../service.json", "/v1", "/v1/renders/", "/v1/renders/..%2f",
+        "/v1/renders/x/y", "/v1/renders/../../etc/passwd", "/v1/rendersx", "/v1/renders/x\n"})
     EXPECT_EQ(problem_of(tested.call("GET", path)), "not-found") << path;
   const HttpResponse wrong = tested.call("PUT", "/v1/renders");
   EXPECT_EQ(problem_of(wrong), "method-not-allowed");

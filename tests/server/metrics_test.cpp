@@ -127,7 +127,10 @@ TEST(FrontTest, RoutesAreThePatternsOfTheOpenApiDocument) {
   EXPECT_EQ(route_pattern("/v1/renders/01ARZ3NDEKTSV4RRFFQ69G5FAV"), "/v1/renders/{id}");
   EXPECT_EQ(route_pattern("/v1/renders/x/image"), "/v1/renders/{id}/image");
   EXPECT_EQ(route_pattern("/metrics"), "/metrics");
-  for (const char* path : {"", "/", "//", "/v1/renders/", "/v1/renders/x/y", "/livez/", "livez"})
+  EXPECT_EQ(route_pattern("/"), "/");
+  EXPECT_EQ(route_pattern("/web/app.js"), "/web/{file}");
+  for (const char* path :
+       {"", "//", "/web/", "/v1/renders/", "/v1/renders/x/y", "/livez/", "livez"})
     EXPECT_EQ(route_pattern(path), "other") << path;
 }
 
