@@ -55,7 +55,8 @@ TEST(SceneObjects, OfAnotherConfigurationKeepItsDefaults) {
             ObjectRequest(BowlObject{50, 2}));
   EXPECT_EQ(accepted(object(R"("type":"sphere")"), catalog).object,
             ObjectRequest(SphereObject{20}));
-  for (const json& part : json::parse(objects_json(catalog))["objects"])
+  const json listed = json::parse(objects_json(catalog));
+  for (const json& part : listed["objects"])
     if (part["name"] == "bowl") {
       EXPECT_EQ(part["parameters"][0]["default"], 50);
     }

@@ -62,16 +62,11 @@ Estimate under_half_a_sky(Scene scene, std::uint32_t samples) {
 }
 
 TEST(OilFilm, OverAllOfABodyMakesItSmooth) {
-  // Without looking for light: pixels that share a list of lights err together, which the standard
-  // error does not tell.
-  const auto alone = [](Scene scene) {
-    scene.next_event_estimation = false;
-    return under_half_a_sky(std::move(scene), 256);
-  };
   for (const double sigma_s : {0.0, 3.0, infinity}) {
-    const Estimate film = alone(oiled(Sphere{}, material(1.5, 0.5, sigma_s), -2, 1));
-    const Estimate smooth = alone(body(Sphere{}, material(1.5, 0, sigma_s), 2));
-    const Estimate rough = alone(body(Sphere{}, material(1.5, 0.5, sigma_s), 3));
+    const Estimate film =
+        under_half_a_sky(oiled(Sphere{}, material(1.5, 0.5, sigma_s), -2, 1), 256);
+    const Estimate smooth = under_half_a_sky(body(Sphere{}, material(1.5, 0, sigma_s), 2), 256);
+    const Estimate rough = under_half_a_sky(body(Sphere{}, material(1.5, 0.5, sigma_s), 3), 256);
     const double error = std::hypot(film.standard_error, smooth.standard_error);
     EXPECT_NEAR(film.mean, smooth.mean, 4 * error + 1e-4) << sigma_s;
     if (sigma_s == 0) {
