@@ -45,8 +45,8 @@ class Siege {
 
   Siege(unsigned seed, int most_jobs) : seed_(seed), most_jobs_(most_jobs) {
     for (unsigned i = 0; i < 2; ++i)
-      threads_.emplace_back([this, i](std::stop_token stop) { besiege(seed_ + i, stop); });
-    threads_.emplace_back([this](std::stop_token stop) { follow(stop); });
+      besiegers_.emplace_back([this, i](std::stop_token stop) { besiege(seed_ + i, stop); });
+    follower_ = std::jthread([this](std::stop_token stop) { follow(stop); });
   }
   ~Siege() { end(); }
 
@@ -55,8 +55,9 @@ class Siege {
 
   /// No more orders; returns when all that was asked is answered.
   void end() {
-    for (std::jthread& thread : threads_) thread.request_stop();
-    threads_.clear();
+    for (std::jthread& besieger : besiegers_) besieger.request_stop();
+    besiegers_.clear();
+    follower_ = {};  // last: what was accepted at the end has a stream too
   }
 
   // Once it has ended.
@@ -195,7 +196,8 @@ class Siege {
   std::vector<Job> jobs_;
   std::map<std::string, std::string> images_;  ///< by URL
   std::map<std::string, EventLog> logs_;       ///< by location; the follower's until it has ended
-  std::vector<std::jthread> threads_;
+  std::vector<std::jthread> besiegers_;
+  std::jthread follower_;
 };
 
 }  // namespace translucube::server::test
