@@ -27,12 +27,11 @@ bool fly(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng, Hit&
 }
 
 /// After a collision deep inside an isotropic medium: one large step to the surface of the largest
-/// ball that stays `margin` mean free paths inside the boundary. False where none fits.
+/// ball that fits into the body. False where none does.
 template <class Shape>
-bool large_step(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng,
-                double margin = 0) {
+bool large_step(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng) {
   if (medium.g != 0) return false;
-  const int level = ball_level(shape.clearance(particle.p) * medium.sigma_s - margin);
+  const int level = ball_level(shape.clearance(particle.p) * medium.sigma_s);
   if (level < 0) return false;
   const BallCrossing crossing = cross_ball(level, rng);
   particle.p = particle.p + (ball_radius(level) / medium.sigma_s) * crossing.outward;
