@@ -13,15 +13,6 @@ RoughConnector::RoughConnector(const Scene& scene, Collector& collector, const L
            static_cast<float>(medium_.sigma_s), static_cast<float>(medium_.g)};
 }
 
-WalkMedium RoughConnector::walk_medium() const {
-  WalkMedium walk{static_cast<float>(medium_.sigma_s), static_cast<float>(medium_.g)};
-  if (active()) {
-    walk.margin = margin;
-    walk.falling = falling;
-  }
-  return walk;
-}
-
 void RoughConnector::place(RoughExitBatch& batch, Vec3 p, double depth2, Vec3 d, Vec3 light) {
   const std::size_t i = batch.size++;
   const double scale = 1 / std::fmax(length(p), 1e-12);

@@ -22,7 +22,7 @@ class RoughConnector {
 
   bool active() const { return !lights_.empty(); }
   /// The body, and which of its collisions look for light.
-  WalkMedium walk_medium() const;
+  WalkMedium walk_medium() const { return {medium_, active(), margin, falling}; }
 
   void start(Path&) {}
   /// From collisions of walks; a vertex's slot is the index of its path.

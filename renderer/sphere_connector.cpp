@@ -44,15 +44,6 @@ void SphereConnector::start(Path& path) {
   for (Rgb& order : walks_.back().expected) order = order * std::numbers::inv_pi_v<float>;
 }
 
-WalkMedium SphereConnector::walk_medium() const {
-  WalkMedium walk{static_cast<float>(medium_.sigma_s), static_cast<float>(medium_.g)};
-  if (active()) {
-    walk.margin = margin;
-    walk.falling = falling;
-  }
-  return walk;
-}
-
 bool SphereConnector::reaches_far(const SphereExits& exits) const {
   return medium_.sigma_s * exits.shortest_far() < longest_way;
 }

@@ -42,7 +42,7 @@ class SphereConnector {
   /// Whether there is anything to look for: light that differs between directions.
   bool active() const { return environment_ != nullptr; }
   /// The body, and which of its collisions look for light.
-  WalkMedium walk_medium() const;
+  WalkMedium walk_medium() const { return {medium_, active(), margin, falling}; }
 
   /// Before the first connection of a path: its walk starts at path.p.
   void start(Path& path);

@@ -23,6 +23,14 @@ struct WalkMedium {
   /// Collisions look for light with the chance exp(-falling x optical depth); below 0: never.
   float falling = -1;
 
+  WalkMedium(float density, float mean_cosine, float visited = 0, float fall = -1)
+      : sigma_s(density), g(mean_cosine), margin(visited), falling(fall) {}
+  /// `looking`: whether collisions look for light, with this margin and fall of the chance.
+  WalkMedium(const Medium& medium, bool looking, float visited, float fall)
+      : WalkMedium(static_cast<float>(medium.sigma_s), static_cast<float>(medium.g)) {
+    if (looking) margin = visited, falling = fall;
+  }
+
   /// The chance at a depth 1 - |p|^2.
   double chance(double depth2) const { return std::exp(-falling * 0.5 * sigma_s * depth2); }
 };
