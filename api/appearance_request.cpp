@@ -13,9 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Every integer up to it is exact in double precision, hence in every JSON reader.
-constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 53) - 1;
-
 /// The same material in a render request.
 RenderRequest render_request(const AppearanceRequest& request, const Catalog& catalog) {
   RenderRequest render = catalog.defaults;

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/parse.h"
+#include "api/status_json.h"
 #include "renderer/absorption.h"
 #include "renderer/material_cube.h"
 #include "renderer/spectrum.h"
@@ -10,8 +11,6 @@ namespace translucube::api {
 namespace {
 
 using nlohmann::json;
-
-json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 /// Linear Rec.709 of D65 light after `d` mm of the absorber (Beer-Lambert-Bouguer), white = 1.
 /// sigma_a_peak is finite.

@@ -29,6 +29,7 @@ struct Range {
   bool contains(double value) const;
   std::string text() const;  ///< "in [0, 1]", "> 0", ...
 };
+inline constexpr Range unit_range{0, 1};
 
 enum class Presence { optional, required };
 

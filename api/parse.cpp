@@ -14,9 +14,6 @@ namespace {
 using nlohmann::json;
 using namespace nlohmann::literals;
 
-/// Every integer up to it is exact in double precision, hence in every JSON reader.
-constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 53) - 1;
-
 void read_image(const json& value, const std::string& pointer, const Limits& limits,
                 RenderRequest& out, Faults& faults) {
   ObjectReader image(value, pointer, faults);

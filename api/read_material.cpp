@@ -14,7 +14,6 @@ constexpr std::size_t most_spectrum_samples = 4096;
 // 1/mm. Beyond it, products with lengths leave single precision; a mean free path of 1e-18 mm is as
 // good as none, and cube coordinates of 1 say so exactly.
 constexpr Range coefficient_range{0, 1e18};
-constexpr Range unit_range{0, 1};
 constexpr Range ior_range{1, 4};
 constexpr Range anisotropy_range{-1, 1, true, true};
 

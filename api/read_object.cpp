@@ -15,8 +15,8 @@ constexpr double least_share = 1e-6;
 
 void check_extents(std::initializer_list<std::pair<const char*, double>> extents,
                    ObjectReader& object) {
-  const double largest =
-      std::ranges::max(extents, {}, &std::pair<const char*, double>::second).second;
+  double largest = 0;
+  for (const auto& [name, extent] : extents) largest = std::max(largest, extent);
   for (const auto& [name, extent] : extents)
     if (extent < least_share * largest)
       object.fault(name, "must be at least a millionth of the largest extent");

@@ -39,8 +39,6 @@ void read_environment(const json& value, const std::string& pointer, const Catal
   environment.refuse_unknown_keys();
 }
 
-Vec3 vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
-
 /// v / |v|, or zero for zero, without overflow or underflow on the way.
 Vec3 direction(Vec3 v) {
   const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});

@@ -10,7 +10,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Range unit_range{0, 1};
 constexpr std::size_t most_absorbers = 256;
 
 /// {"from", "to", "count"}: both ends exact.

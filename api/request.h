@@ -14,6 +14,8 @@
 
 namespace translucube::api {
 
+inline Vec3 vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
 /// `coefficients` of a material; exactly one of sigma_a and sigma_a_peak.
 struct CoefficientsRequest {
   std::variant<std::array<double, 3>, double> sigma_a{

@@ -13,6 +13,9 @@
 
 namespace translucube::api {
 
+/// Every integer up to it is exact in double precision, hence in every JSON reader.
+inline constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 53) - 1;
+
 /// A request says where in the cube its material is; the defaults must not.
 enum class MaterialPoint { required, refused };
 

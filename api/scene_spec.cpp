@@ -87,8 +87,6 @@ LightModel light_model(const RenderRequest& request, const Material& material) {
                  .scattering};
 }
 
-Vec3 vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
-
 Rgb radiance(const std::array<double, 3>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }

@@ -5,6 +5,7 @@
 
 #include "renderer/explorable.h"
 #include "renderer/image_io.h"
+#include "renderer/image_io_rules.h"
 
 namespace translucube {
 namespace {
@@ -13,7 +14,6 @@ constexpr const char* bins_attribute = "translucube:bins";  ///< "first last nod
 constexpr const char* unit_attribute = "translucube:unit_mm";
 constexpr const char* lengths_attribute = "translucube:lengths_mm";
 constexpr const char* scales_attribute = "translucube:scales";
-constexpr const char* request_attribute = "translucube:request";
 
 /// Numbers as text, shortest form that reads back to the same value.
 template <class... Numbers>

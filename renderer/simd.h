@@ -1,8 +1,8 @@
 // Numbers, masks and directions of as many lanes as a register has, by Highway: included once for
 // each instruction set by the files that are compiled for each (foreach_target.h), never elsewhere.
 //
-// Every operation rounds as IEEE 754 says and fma() fuses on every target that is chosen at run
-// time, so that a lane's result does not depend on how many lanes there are.
+// With AVX-512 and AVX2 every operation rounds as IEEE 754 says and fma() fuses, so that a lane's
+// result does not depend on how many lanes there are.
 
 #include <hwy/highway.h>
 // After highway.h:

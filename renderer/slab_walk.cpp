@@ -5,6 +5,7 @@
 #include <numbers>
 #include <type_traits>
 
+#include "renderer/ball_tables.h"
 #include "renderer/microsurface.h"
 
 namespace translucube {
@@ -23,7 +24,7 @@ constexpr double jump_depth = 16, jump_margin = 4;
 /// Milne's problem: light leaves a thick medium as from `milne_length` transport mean free paths
 /// behind its face, which is the mean cosine of its flux; the density mu (milne_slope + mu) has
 /// that mean and follows Chandrasekhar's H (1960, section 16) within a few percent.
-constexpr double milne_length = 0.7104, milne_slope = 0.6036;
+constexpr double milne_slope = 0.6036;
 
 const double core_sin2 = sin2_of_degrees(core_half_angle_deg);
 const double ring_sin2 = sin2_of_degrees(ring_half_angle_deg);

@@ -10,13 +10,12 @@ namespace translucube::server {
 using api::JobState;
 using rows::Lock;
 using rows::text;
-using sql::Connection;
 using sql::Statement;
 using sql::Transaction;
 
 JobStore::JobStore(const std::filesystem::path& file, StoreOptions options)
     : options_(std::move(options)), owner_(random_hex(16)) {
-  writer_ = std::make_unique<Connection>(file, Connection::Access::read_write);
+  writer_ = std::make_unique<sql::Connection>(file, sql::Connection::Access::read_write);
   prepare_schema(*writer_, file);
 
   Transaction transaction(*writer_);
@@ -36,7 +35,7 @@ JobStore::JobStore(const std::filesystem::path& file, StoreOptions options)
   transaction.commit();
 
   if (file != ":memory:")
-    own_reader_ = std::make_unique<Connection>(file, Connection::Access::read_only);
+    own_reader_ = std::make_unique<sql::Connection>(file, sql::Connection::Access::read_only);
   reader_ = own_reader_ ? own_reader_.get() : writer_.get();
 }
 
@@ -86,7 +85,7 @@ std::variant<Submitted, IdempotencyMismatch, QueueFull> JobStore::submit(const N
   return submitted;
 }
 
-std::optional<Job> JobStore::find_on(Connection& connection, const std::string& id) const {
+std::optional<Job> JobStore::find_on(sql::Connection& connection, const std::string& id) const {
   Statement statement(connection, std::string(rows::select_job) + "WHERE id = ?");
   if (!statement.bind(id).step()) return std::nullopt;
   return rows::job_of(statement);

@@ -4,7 +4,6 @@
 
 namespace translucube::server::rows {
 
-using sql::Connection;
 using sql::Statement;
 
 std::string text(api::JobState state) { return std::string(api::name(state)); }
@@ -40,7 +39,7 @@ Job job_of(const Statement& row) {
   return job;
 }
 
-void insert_task(Connection& writer, const std::string& job_id, const Pass& pass,
+void insert_task(sql::Connection& writer, const std::string& job_id, const Pass& pass,
                  Priority priority) {
   Statement(writer,
             "INSERT INTO tasks(job_id, pass_index, first_sample, sample_count, state, priority) "
@@ -49,11 +48,11 @@ void insert_task(Connection& writer, const std::string& job_id, const Pass& pass
       .run();
 }
 
-void delete_open_tasks(Connection& writer, const std::string& job_id) {
+void delete_open_tasks(sql::Connection& writer, const std::string& job_id) {
   Statement(writer, "DELETE FROM tasks WHERE job_id = ? AND state <> 'done'").bind(job_id).run();
 }
 
-api::StateCounts point_counts(Connection& connection, const std::string& id) {
+api::StateCounts point_counts(sql::Connection& connection, const std::string& id) {
   Statement statement(connection,
                       "SELECT state, SUM(points) FROM jobs WHERE sweep_id = ? GROUP BY state");
   statement.bind(id);
@@ -64,7 +63,7 @@ api::StateCounts point_counts(Connection& connection, const std::string& id) {
   return counts;
 }
 
-std::vector<std::string> contents_of(Connection& writer, const std::string& where,
+std::vector<std::string> contents_of(sql::Connection& writer, const std::string& where,
                                      const std::string& id) {
   Statement statement(writer, "SELECT DISTINCT content FROM pictures WHERE " + where);
   statement.bind(id);

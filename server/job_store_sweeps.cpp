@@ -8,7 +8,6 @@ namespace translucube::server {
 using api::JobState;
 using rows::Lock;
 using rows::text;
-using sql::Connection;
 using sql::Statement;
 using sql::Transaction;
 
@@ -86,7 +85,7 @@ std::variant<SubmittedSweep, IdempotencyMismatch, QueueFull> JobStore::submit(
   return submitted;
 }
 
-std::optional<StoredSweep> JobStore::find_sweep_on(Connection& connection,
+std::optional<StoredSweep> JobStore::find_sweep_on(sql::Connection& connection,
                                                    const std::string& id) const {
   Statement statement(connection, std::string(select_sweep) + "WHERE id = ?");
   if (!statement.bind(id).step()) return std::nullopt;

@@ -5,13 +5,12 @@ namespace translucube::server {
 
 using api::JobState;
 using rows::Lock;
-using sql::Connection;
 using sql::Statement;
 using sql::Transaction;
 
 namespace {
 
-void store_progress(Connection& connection, const std::string& id, const Progress& progress) {
+void store_progress(sql::Connection& connection, const std::string& id, const Progress& progress) {
   Statement(connection,
             "UPDATE jobs SET passes = ?, samples = ?, total_samples = ?, relative_error = ?, "
             "seconds = ?, eta_seconds = ? WHERE id = ?")
@@ -20,7 +19,7 @@ void store_progress(Connection& connection, const std::string& id, const Progres
       .run();
 }
 
-void end_task(Connection& connection, const Task& task, double seconds) {
+void end_task(sql::Connection& connection, const Task& task, double seconds) {
   Statement(connection,
             "UPDATE tasks SET state = 'done', seconds = ? WHERE job_id = ? AND pass_index = ?")
       .bind(seconds, task.job_id, task.pass.index)

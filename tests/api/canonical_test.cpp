@@ -203,12 +203,12 @@ TEST(CanonicalRequest, FillsInEveryDefaultWithSortedKeys) {
 }
 
 TEST(CanonicalRequest, KeepsTheFormInWhichTheMaterialWasGiven) {
-  const auto json = nlohmann::json::parse(canonical_json(
+  const auto document = nlohmann::json::parse(canonical_json(
       accepted(R"({"material":{"coefficients":{"sigma_a":[0,1,2],"alpha":0.5,"sigma_s":3}}})")));
-  EXPECT_EQ(json["material"]["coefficients"],
+  EXPECT_EQ(document["material"]["coefficients"],
             nlohmann::json::parse(R"({"sigma_a":[0.0,1.0,2.0],"alpha":0.5,"sigma_s":3.0})"));
-  EXPECT_FALSE(json["material"].contains("cube"));
-  EXPECT_FALSE(json["material"].contains("absorber"));
+  EXPECT_FALSE(document["material"].contains("cube"));
+  EXPECT_FALSE(document["material"].contains("absorber"));
 }
 
 }  // namespace

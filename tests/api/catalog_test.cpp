@@ -2,6 +2,7 @@
 
 #include "renderer/absorption.h"
 #include "tests/api/fixture.h"
+#include "tests/support/repository.h"
 
 namespace translucube::api {
 namespace {
@@ -178,7 +179,7 @@ void expect_documented(const json& value, const std::string& path, const std::st
 }
 
 TEST_F(Configuration, EveryKeyOfTheShippedFileIsDocumented) {
-  std::ifstream file(TRANSLUCUBE_SOURCE_DIR "/docs/configuration.md");
+  std::ifstream file(in_repository("docs/configuration.md"));
   expect_documented(config, "", {std::istreambuf_iterator<char>(file), {}});
 }
 

@@ -14,11 +14,12 @@
 #include <vector>
 
 #include "api/parse.h"
+#include "tests/support/repository.h"
 
 namespace translucube::api {
 
 inline const std::filesystem::path& service_json() {
-  static const std::filesystem::path file = TRANSLUCUBE_SOURCE_DIR "/config/service.json";
+  static const std::filesystem::path file = in_repository("config/service.json");
   return file;
 }
 

@@ -7,6 +7,7 @@
 
 #include "api/parse.h"
 #include "tests/api/fixture.h"
+#include "tests/support/repository.h"
 
 namespace translucube::api {
 namespace {
@@ -15,7 +16,7 @@ using nlohmann::json;
 using testing::ElementsAre;
 
 const Catalog& catalog() {
-  static const Catalog shipped = load_catalog(TRANSLUCUBE_SOURCE_DIR "/config/service.json");
+  static const Catalog shipped = load_catalog(in_repository("config/service.json"));
   return shipped;
 }
 
@@ -27,7 +28,7 @@ std::string canonical(const std::string& material, bool explorable = true) {
   return canonical_json(std::get<RenderRequest>(parsed));
 }
 
-const std::string cube =
+const std::string inside =
     R"({"cube":{"absorption":0.3,"roughness":0.3,"scattering":0.5},"reference_thickness_mm":5})";
 
 Redeveloped redeveloped(const std::string& material, const Redevelopment& asked) {
@@ -46,14 +47,14 @@ std::vector<std::string> fault_pointers(const std::variant<Redeveloped, Problem>
 }
 
 TEST(Redevelop, TakesAbsorptionOfTheReferenceThickness) {
-  const Redeveloped half = redeveloped(cube, {0.5, {}});
+  const Redeveloped half = redeveloped(inside, {0.5, {}});
   EXPECT_DOUBLE_EQ(half.absorption.sigma_a_peak, std::log(2.0) / 5);
   EXPECT_EQ(json::parse(half.request)["material"]["cube"]["absorption"], 0.5);
-  EXPECT_TRUE(std::isinf(redeveloped(cube, {1.0, {}}).absorption.sigma_a_peak));
+  EXPECT_TRUE(std::isinf(redeveloped(inside, {1.0, {}}).absorption.sigma_a_peak));
 }
 
 TEST(Redevelop, KeepsWhatIsNotAsked) {
-  const Redeveloped named = redeveloped(cube, {{}, "amber"});
+  const Redeveloped named = redeveloped(inside, {{}, "amber"});
   EXPECT_DOUBLE_EQ(named.absorption.sigma_a_peak, -std::log(0.7) / 5);
   const auto request = std::get<RenderRequest>(parse_render_request(named.request, catalog()));
   EXPECT_EQ(canonical_json(request), named.request) << "it is canonical";
@@ -63,7 +64,8 @@ TEST(Redevelop, KeepsWhatIsNotAsked) {
 
 TEST(Redevelop, GivesTheMaterialThatItsRequestDescribes) {
   for (const std::string& material :
-       {cube, std::string(R"({"coefficients":{"sigma_a":[0.1,0.4,0.2],"alpha":0.1,"sigma_s":2}})"),
+       {inside,
+        std::string(R"({"coefficients":{"sigma_a":[0.1,0.4,0.2],"alpha":0.1,"sigma_s":2}})"),
         std::string(R"({"coefficients":{"sigma_a_peak":0.3,"alpha":0,"sigma_s":2}})")})
     for (const Redevelopment& asked :
          {Redevelopment{0.8, {}}, Redevelopment{{}, "amber"}, Redevelopment{0.2, "amber"},
@@ -90,13 +92,14 @@ TEST(Redevelop, KeepsTheColourOfCoefficientsOfEachChannel) {
 }
 
 TEST(Redevelop, TakesAnAbsorberThatHasNoName) {
-  const Redeveloped rgb = redeveloped(cube, {0.5, R"({"rgb":[0.2,1,1]})"});
+  const Redeveloped rgb = redeveloped(inside, {0.5, R"({"rgb":[0.2,1,1]})"});
   EXPECT_THAT(std::get<RgbAbsorber>(rgb.absorption.absorber).relative, ElementsAre(0.2, 1, 1));
   EXPECT_EQ(json::parse(rgb.request)["material"]["absorber"]["rgb"], json({0.2, 1, 1}));
-  const Redeveloped own = redeveloped(cube, {{}, R"({"wavelengths_nm":[400,700],"values":[1,0]})"});
+  const Redeveloped own =
+      redeveloped(inside, {{}, R"({"wavelengths_nm":[400,700],"values":[1,0]})"});
   EXPECT_THAT(std::get<SpectralAbsorber>(own.absorption.absorber).values, ElementsAre(1, 0));
   const auto refused = [](const std::string& absorber) {
-    return fault_pointers(redevelop(canonical(cube), {{}, absorber}, catalog()));
+    return fault_pointers(redevelop(canonical(inside), {{}, absorber}, catalog()));
   };
   EXPECT_THAT(refused(R"({"rgb":[0,0,0]})"), ElementsAre("?absorber/rgb"));
   EXPECT_THAT(refused("{"), ElementsAre("?absorber"));
@@ -104,14 +107,14 @@ TEST(Redevelop, TakesAnAbsorberThatHasNoName) {
 }
 
 TEST(Redevelop, OtherSamplesAreAnotherQuality) {
-  const std::string request = with_samples(canonical(cube), 12);
+  const std::string request = with_samples(canonical(inside), 12);
   EXPECT_EQ(json::parse(request)["quality"], (json{{"samples", 12}}));
   const auto parsed = parse_render_request(request, catalog());
   EXPECT_EQ(canonical_json(std::get<RenderRequest>(parsed)), request);
 }
 
 TEST(Redevelop, RefusesWhatItDoesNotKnow) {
-  const std::string request = canonical(cube);
+  const std::string request = canonical(inside);
   EXPECT_THAT(fault_pointers(redevelop(request, {1.5, "nothing"}, catalog())),
               ElementsAre("?absorber", "?absorption"));
   EXPECT_THAT(fault_pointers(redevelop(request, {std::nan(""), {}}, catalog())),
@@ -119,7 +122,7 @@ TEST(Redevelop, RefusesWhatItDoesNotKnow) {
 }
 
 TEST(Redevelop, RefusesARenderWithoutPathLengthsNamingTheParameters) {
-  const auto result = redevelop(canonical(cube, false), {0.5, "amber"}, catalog());
+  const auto result = redevelop(canonical(inside, false), {0.5, "amber"}, catalog());
   EXPECT_EQ(std::get<Problem>(result).code, ProblemCode::conflict);
   EXPECT_THAT(fault_pointers(result), ElementsAre("?absorption", "?absorber"));
 }

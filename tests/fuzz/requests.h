@@ -11,14 +11,15 @@
 
 #include "api/catalog.h"
 #include "api/problem.h"
+#include "tests/support/repository.h"
 
 namespace translucube::fuzz {
 
 /// The shipped configuration; a folder of files, so that paths of files are tried too.
 inline const api::Catalog& catalog() {
   static const api::Catalog loaded = [] {
-    api::Catalog shipped = api::load_catalog(TRANSLUCUBE_SOURCE_DIR "/config/service.json");
-    shipped.file_folders.emplace_back(TRANSLUCUBE_SOURCE_DIR "/tests/fuzz");
+    api::Catalog shipped = api::load_catalog(in_repository("config/service.json"));
+    shipped.file_folders.emplace_back(in_repository("tests/fuzz"));
     return shipped;
   }();
   return loaded;

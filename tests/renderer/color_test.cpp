@@ -16,6 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/repository.h"
+
 namespace translucube {
 namespace {
 
@@ -110,7 +112,7 @@ class Color : public testing::Test {
       ::setenv("OCIO", environment_.c_str(), 1);
   }
 
-  const std::filesystem::path shipped_ = TRANSLUCUBE_SOURCE_DIR "/config/display.ocio";
+  const std::filesystem::path shipped_ = in_repository("config/display.ocio");
 
  private:
   std::string environment_;

@@ -12,13 +12,14 @@
 #include <vector>
 
 #include "renderer/reduce.h"
+#include "tests/support/repository.h"
 
 namespace translucube {
 namespace {
 
-using Color = std::array<float, 3>;
+using Pixel = std::array<float, 3>;
 
-Image picture(int width, int height, const std::function<Color(int, int)>& color) {
+Image picture(int width, int height, const std::function<Pixel(int, int)>& color) {
   Image image(width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
@@ -26,14 +27,14 @@ Image picture(int width, int height, const std::function<Color(int, int)>& color
   return image;
 }
 
-Image uniform(int width, int height, const Color& color) {
+Image uniform(int width, int height, const Pixel& color) {
   return picture(width, height, [&](int, int) { return color; });
 }
 
 Image checker(int size) {
   return picture(size, size, [](int x, int y) {
     const float v = (x + y) % 2 == 0 ? 0.0f : 1.0f;
-    return Color{v, v, v};
+    return Pixel{v, v, v};
   });
 }
 
@@ -41,7 +42,7 @@ const float* at(const Image& image, int x, int y) {
   return image.pixels.data() + 3 * (std::size_t(y) * image.width + x);
 }
 
-Color mean(const Image& image, const Box& box) {
+Pixel mean(const Image& image, const Box& box) {
   std::array<double, 3> sum{};
   for (int y = box.y; y < box.y + box.height; ++y)
     for (int x = box.x; x < box.x + box.width; ++x)
@@ -81,19 +82,19 @@ class ContactSheetTest : public testing::Test {
   }
 
   const Font font_ = find_font();
-  const ColorConfig colors_{TRANSLUCUBE_SOURCE_DIR "/config/display.ocio"};
+  const ColorConfig colors_{in_repository("config/display.ocio")};
 };
 
 TEST(Reduce, IsTheMeanOverTheArea) {
   for (const int size : {2, 3, 7, 16, 33}) {
     const Image reduced = reduce(checker(66), size, size);
-    const Color average = mean(reduced, {0, 0, size, size});
+    const Pixel average = mean(reduced, {0, 0, size, size});
     EXPECT_NEAR(average[0], 0.5, 1e-6) << size;
   }
   const Image half = reduce(checker(64), 32, 32);
   for (const float value : half.pixels) EXPECT_EQ(value, 0.5f);
 
-  const Image ramp = picture(5, 1, [](int x, int) { return Color{float(x), 10.0f * x, 1}; });
+  const Image ramp = picture(5, 1, [](int x, int) { return Pixel{float(x), 10.0f * x, 1}; });
   const Image two = reduce(ramp, 2, 1);  // pixels 0, 1 and half of 2; half of 2, 3 and 4
   EXPECT_NEAR(two.pixels[0], (0 + 1 + 0.5 * 2) / 2.5, 1e-6);
   EXPECT_NEAR(two.pixels[3], (0.5 * 2 + 3 + 4) / 2.5, 1e-6);
@@ -101,7 +102,7 @@ TEST(Reduce, IsTheMeanOverTheArea) {
 }
 
 TEST(Reduce, ToTheSameSizeGivesTheSameValues) {
-  const Image image = picture(7, 5, [](int x, int y) { return Color{0.1f * x, 1e6f * y, -3.7f}; });
+  const Image image = picture(7, 5, [](int x, int y) { return Pixel{0.1f * x, 1e6f * y, -3.7f}; });
   EXPECT_EQ(reduce(image, 7, 5).pixels, image.pixels);
 }
 
@@ -109,18 +110,18 @@ TEST_F(ContactSheetTest, PicturesLandInTheirCellsWithTheirColours) {
   const SheetLayout layout = lay_out_sheet(spec(100, 60), font_);
   ContactSheet sheet(layout, font_, scene_linear_look());
   const auto color_of = [](const SheetCell& c) {
-    return Color{0.1f + 5 * c[0], 0.2f + c[1], 0.3f + c[2] + 10 * c[3]};
+    return Pixel{0.1f + 5 * c[0], 0.2f + c[1], 0.3f + c[2] + 10 * c[3]};
   };
   for (const SheetCell& cell : cells()) {
     // As bright on the left as dark on the right: the cell's mean is the colour.
-    const Color color = color_of(cell);
+    const Pixel color = color_of(cell);
     sheet.place(cell, picture(100, 60, [&](int x, int) {
                   const float f = 2 * (x + 0.5f) / 100;
-                  return Color{f * color[0], f * color[1], f * color[2]};
+                  return Pixel{f * color[0], f * color[1], f * color[2]};
                 }));
   }
   for (const SheetCell& cell : cells()) {
-    const Color found = mean(sheet.image(), layout.thumbnail(cell));
+    const Pixel found = mean(sheet.image(), layout.thumbnail(cell));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], color_of(cell)[c], 1e-4);
     const Box box = layout.thumbnail(cell);
     EXPECT_LT(at(sheet.image(), box.x, box.y)[0],
@@ -194,7 +195,7 @@ TEST_F(ContactSheetTest, AMissingCellShowsItsStateUntilThePictureComes) {
   EXPECT_EQ(sheet.image().pixels, empty.pixels);
   sheet.mark(cell, "queued");
   sheet.place(cell, uniform(80, 80, {2, 3, 4}));
-  const Color found = mean(sheet.image(), layout.cell(cell));
+  const Pixel found = mean(sheet.image(), layout.cell(cell));
   EXPECT_FLOAT_EQ(found[0], 2);
   EXPECT_FLOAT_EQ(found[2], 4);
 }
@@ -203,7 +204,7 @@ TEST_F(ContactSheetTest, ATinyPictureLiesInTheMiddleOfItsClearedCell) {
   const SheetLayout layout = lay_out_sheet(spec(5, 3), font_);
   const SheetLook look = scene_linear_look();
   ContactSheet sheet(layout, font_, look);
-  const Image tiny = picture(5, 3, [](int x, int y) { return Color{1.0f * x, 2.0f * y, 9}; });
+  const Image tiny = picture(5, 3, [](int x, int y) { return Pixel{1.0f * x, 2.0f * y, 9}; });
   sheet.mark({0, 0, 0, 0}, "failed");
   sheet.place({0, 0, 0, 0}, tiny);
   const Box cell = layout.cell({0, 0, 0, 0}), box = layout.thumbnail({0, 0, 0, 0});

@@ -19,6 +19,8 @@
 
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
+
+#include "tests/support/repository.h"
 #endif
 
 namespace translucube {
@@ -304,7 +306,7 @@ TEST_F(ImageIo, EmptyAndOversizedImagesAreNotWritten) {
 }
 
 TEST_F(ImageIo, ShippedEnvironmentsAreReadable) {
-  const std::filesystem::path folder = TRANSLUCUBE_SOURCE_DIR "/config/environments";
+  const std::filesystem::path folder = in_repository("config/environments");
   const std::pair<const char*, float> peaks[] = {{"forest.exr", 1010}, {"sunrise.exr", 33664}};
   for (const auto& [file, peak] : peaks) {
     const Image image = read_image(folder / file);

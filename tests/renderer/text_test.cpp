@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/repository.h"
+
 namespace translucube {
 namespace {
 
@@ -98,7 +100,7 @@ TEST(FindFont, NamesEveryFileThatIsMissing) {
 }
 
 TEST(FindFont, RefusesWhatIsNoFont) {
-  const std::vector<std::filesystem::path> files = {TRANSLUCUBE_SOURCE_DIR "/CMakeLists.txt"};
+  const std::vector<std::filesystem::path> files = {in_repository("CMakeLists.txt")};
   EXPECT_THROW(find_font(files), TextError);
 }
 

@@ -99,7 +99,7 @@ std::string undisturbed(const std::string& request) {
   return tested.exr(id);
 }
 
-ProblemCode refusal(const Result<Submission>& result) {
+ProblemCode refusal(const Result<server::Submission>& result) {
   const auto* problem = std::get_if<Problem>(&result);
   return problem ? problem->code : ProblemCode::conflict;
 }

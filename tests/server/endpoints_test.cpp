@@ -15,8 +15,9 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-struct Tested {
-  explicit Tested(int workers = 1) : service(folder.path(), renderer.engine(), {workers, {}}) {}
+struct FrontUnderTest {
+  explicit FrontUnderTest(int workers = 1)
+      : service(folder.path(), renderer.engine(), {workers, {}}) {}
 
   HttpResponse call(const std::string& method, const std::string& path,
                     const std::string& body = {}, std::map<std::string, std::string> headers = {},
@@ -54,7 +55,7 @@ std::string problem_of(const HttpResponse& response) {
 }
 
 TEST(EndpointsTest, APostIsAcceptedWithItsLocation) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   const HttpResponse response = tested.post(4);
   EXPECT_EQ(response.status, 202);
   EXPECT_EQ(body_of(response)["state"], "queued");
@@ -64,7 +65,7 @@ TEST(EndpointsTest, APostIsAcceptedWithItsLocation) {
 }
 
 TEST(EndpointsTest, APostThatWaitsAnswersWithTheEnd) {
-  Tested tested;
+  FrontUnderTest tested;
   const HttpResponse response = tested.post(4, {{"prefer", "wait=20"}});
   EXPECT_EQ(response.status, 200);
   EXPECT_EQ(header(response, "Preference-Applied"), "wait=20");
@@ -72,12 +73,12 @@ TEST(EndpointsTest, APostThatWaitsAnswersWithTheEnd) {
 }
 
 TEST(EndpointsTest, APostThatWaitedInVainIsAccepted) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   EXPECT_EQ(tested.post(4, {{"prefer", "wait=0"}}).status, 202);
 }
 
 TEST(EndpointsTest, WaitingIsNotHonouredWhereTooManyWait) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   const int most = tested.service.catalog.server.waiting_requests;
   tested.endpoints.waiting = most;
   const auto start = std::chrono::steady_clock::now();
@@ -89,7 +90,7 @@ TEST(EndpointsTest, WaitingIsNotHonouredWhereTooManyWait) {
 }
 
 TEST(EndpointsTest, AnIdempotentPostIsAnsweredWithTheSameRender) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   const HttpResponse first = tested.post(4, {{"idempotency-key", "k"}});
   const HttpResponse again = tested.post(4, {{"idempotency-key", "k"}});
   EXPECT_EQ(again.status, first.status);
@@ -105,7 +106,7 @@ TEST(EndpointsTest, AnIdempotentPostIsAnsweredWithTheSameRender) {
 }
 
 TEST(EndpointsTest, OnlyJsonIsPosted) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   for (const char* type :
        {"text/plain", "application/x-www-form-urlencoded", "multipart/form-data"})
     EXPECT_EQ(
@@ -115,7 +116,7 @@ TEST(EndpointsTest, OnlyJsonIsPosted) {
 }
 
 TEST(EndpointsTest, FaultsOfARequestAreAllNamed) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   const HttpResponse response = tested.call(
       "POST", "/v1/renders",
       R"({"material":{"cube":{"absorption":2,"roughness":0.3,"scattering":0.5}},"sead":1})");
@@ -125,7 +126,7 @@ TEST(EndpointsTest, FaultsOfARequestAreAllNamed) {
 }
 
 TEST(EndpointsTest, AStatusIsSentAgainOnlyWhenItChanged) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   const std::string location = header(tested.post(4), "Location");
   const std::string etag = header(tested.call("GET", location), "ETag");
   EXPECT_THAT(etag, testing::StartsWith("\""));
@@ -138,7 +139,7 @@ TEST(EndpointsTest, AStatusIsSentAgainOnlyWhenItChanged) {
 }
 
 TEST(EndpointsTest, ListsArePagedAndFilteredAndRefuseOtherQueries) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   for (int i = 0; i < 3; ++i) tested.post(4);
   const HttpResponse page = tested.call("GET", "/v1/renders", {}, {}, {{"limit", "2"}});
   EXPECT_EQ(body_of(page)["renders"].size(), 2u);
@@ -159,7 +160,7 @@ TEST(EndpointsTest, ListsArePagedAndFilteredAndRefuseOtherQueries) {
 }
 
 TEST(EndpointsTest, AnImageIsNegotiatedTaggedAndServedInParts) {
-  Tested tested;
+  FrontUnderTest tested;
   const std::string path = "/v1/renders/" + tested.finished() + "/image";
   const HttpResponse png = tested.call("GET", path);
   EXPECT_EQ(png.status, 200);
@@ -187,7 +188,7 @@ TEST(EndpointsTest, AnImageIsNegotiatedTaggedAndServedInParts) {
 }
 
 TEST(EndpointsTest, AnImageThatIsNotToBeHadIsAProblem) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   const std::string location = header(tested.post(4), "Location");
   EXPECT_EQ(problem_of(tested.call("GET", location + "/image")), "not-ready");
   EXPECT_EQ(problem_of(tested.call("GET", location + "/image", {}, {{"accept", "text/html"}})),
@@ -201,7 +202,7 @@ TEST(EndpointsTest, AnImageThatIsNotToBeHadIsAProblem) {
 }
 
 TEST(EndpointsTest, CancelSaysTheStateAndRemoveLeavesNothing) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   const std::string location = header(tested.post(4), "Location");
   for (int i = 0; i < 2; ++i) {
     const HttpResponse canceled = tested.call("POST", location + "/cancel");
@@ -218,7 +219,7 @@ TEST(EndpointsTest, CancelSaysTheStateAndRemoveLeavesNothing) {
 }
 
 TEST(EndpointsTest, WhatMayBeNamedIsListed) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   EXPECT_GE(body_of(tested.call("GET", "/v1/absorbers"))["absorbers"].size(), 5u);
   EXPECT_THAT(body_of(tested.call("GET", "/v1/environments")).dump(), HasSubstr("forest"));
   EXPECT_THAT(body_of(tested.call("GET", "/v1/objects")).dump(), HasSubstr("wedge"));
@@ -226,7 +227,7 @@ TEST(EndpointsTest, WhatMayBeNamedIsListed) {
 }
 
 TEST(EndpointsTest, ProbesSayAliveAndReady) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   EXPECT_EQ(tested.call("GET", "/livez").status, 200);
   EXPECT_EQ(tested.call("GET", "/readyz").status, 200);
   tested.service.service.shut_down();
@@ -238,7 +239,7 @@ TEST(EndpointsTest, ProbesSayAliveAndReady) {
 }
 
 TEST(EndpointsTest, NotReadyWhereTheDiskRefuses) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   // The probe cannot be renamed over a folder.
   std::filesystem::create_directories(tested.folder / "artifacts" / "probe" / "x");
   const HttpResponse unready = tested.call("GET", "/readyz");
@@ -249,7 +250,7 @@ TEST(EndpointsTest, NotReadyWhereTheDiskRefuses) {
 }
 
 TEST(EndpointsTest, UnknownPathsAndWrongMethodsAreTold) {
-  Tested tested(0);
+  FrontUnderTest tested(0);
   for (const char* path :
        {"", "/web/", "/web/../service.json", "/v1", "/v1/renders/", "/v1/renders/..%2f",
         "/v1/renders/x/y", "/v1/renders/../../etc/passwd", "/v1/rendersx", "/v1/renders/x\n"})

@@ -13,8 +13,9 @@ namespace {
 
 using nlohmann::json;
 
-struct Tested {
-  explicit Tested(int workers = 1) : service(folder.path(), renderer.engine(), {workers, {}}) {}
+struct StreamsUnderTest {
+  explicit StreamsUnderTest(int workers = 1)
+      : service(folder.path(), renderer.engine(), {workers, {}}) {}
 
   HttpResponse listen(const std::string& id, const std::string& last = {}) {
     std::map<std::string, std::string> headers;
@@ -56,7 +57,7 @@ std::vector<Told> events_in(const std::string& text) {
 }
 
 TEST(EventStreamTest, TellsARenderFromItsQueueToItsEnd) {
-  Tested tested;
+  StreamsUnderTest tested;
   const std::string id = tested.service.submit(small_request(16)).id;
   std::vector<Told> events;
   {
@@ -99,7 +100,7 @@ TEST(EventStreamTest, ReplaysWhatCameAfterTheLastEventAlsoAfterARestart) {
 }
 
 TEST(EventStreamTest, SlotsAreBoundedAndGivenBack) {
-  Tested tested(0);
+  StreamsUnderTest tested(0);
   const std::string id = tested.service.submit(small_request(4)).id;
   tested.endpoints.streams = tested.service.catalog.server.event_streams - 1;
   {
@@ -114,7 +115,7 @@ TEST(EventStreamTest, SlotsAreBoundedAndGivenBack) {
 }
 
 TEST(EventStreamTest, EndsWithTheServiceAndWithTheRendersRemoval) {
-  Tested tested(0);
+  StreamsUnderTest tested(0);
   const std::string stays = tested.service.submit(small_request(4, 1)).id;
   const std::string goes = tested.service.submit(small_request(4, 2)).id;
   const HttpResponse removed = tested.listen(goes), stopped = tested.listen(stays);
@@ -126,7 +127,7 @@ TEST(EventStreamTest, EndsWithTheServiceAndWithTheRendersRemoval) {
 }
 
 TEST(LongPollTest, AnswersWhenTheStatusIsNoLongerTheKnownOne) {
-  Tested tested(0);
+  StreamsUnderTest tested(0);
   const std::string id = tested.service.submit(small_request(4)).id;
   const auto get = [&](const std::string& wait, const std::string& etag) {
     return respond(tested.endpoints,

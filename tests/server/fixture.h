@@ -21,10 +21,11 @@
 #include "server/job_service.h"
 #include "server/job_store.h"
 #include "tests/server/temp_folder.h"
+#include "tests/support/repository.h"
 
 namespace translucube::server::test {
 
-inline const std::string config_path = TRANSLUCUBE_SOURCE_DIR "/config/service.json";
+inline const std::string config_path = in_repository("config/service.json");
 
 /// A request of `samples` samples per pixel of a tiny image: 4 samples make a pass at first.
 inline std::string small_request(int samples, int seed = 1, int size = 8) {

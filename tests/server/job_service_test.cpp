@@ -125,9 +125,9 @@ TEST(JobServiceTest, WhatIsRememberedOfARenderGoesWithIt) {
   FakeRenderer renderer;
   TestService tested(folder.path(), renderer.engine());
   const std::string id = tested.wait(tested.submit(small_request(4)).id).id;
-  const auto json = [&] { return std::get<ToldText>(tested.service.tell(id))->json; };
-  EXPECT_EQ(json(), to_json(std::get<api::RenderStatus>(tested.service.get(id))));
-  EXPECT_EQ(json(), json());
+  const auto told = [&] { return std::get<ToldText>(tested.service.tell(id))->json; };
+  EXPECT_EQ(told(), to_json(std::get<api::RenderStatus>(tested.service.get(id))));
+  EXPECT_EQ(told(), told());
   EXPECT_EQ(tested.exr(id), tested.exr(id));
   EXPECT_EQ(tested.service.remove(id), std::nullopt);
   EXPECT_EQ(code_of(tested.service.tell(id)), ProblemCode::not_found);

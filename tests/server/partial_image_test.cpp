@@ -22,8 +22,8 @@ struct Gate {
   }
 };
 
-struct Tested {
-  explicit Tested(Engine engine)
+struct PartialUnderTest {
+  explicit PartialUnderTest(Engine engine)
       : service(folder.path(), std::move(engine)),
         endpoints{service.service, service.catalog, service.colors} {}
 
@@ -50,7 +50,7 @@ TEST(PartialImageTest, ARenderIsSeenFromItsFirstPassOn) {
   Gate gate;
   FakeRenderer renderer;
   renderer.before_pass = [&](const Pass& pass) { gate.wait_for(pass); };
-  Tested tested(renderer.engine());
+  PartialUnderTest tested(renderer.engine());
   const std::string id = tested.service.submit(small_request(16)).id;
   ASSERT_TRUE(eventually([&] { return renderer.builds == 1; }));
   EXPECT_EQ(tested.get(id, {{"partial", "true"}}).status, 409) << "nothing is there yet";
@@ -86,7 +86,7 @@ TEST(PartialImageTest, SamplesThatAreNotFiniteAreNotShown) {
   FakeRenderer renderer;
   renderer.before_pass = [&](const Pass& pass) { gate.wait_for(pass); };
   renderer.after_pass = [](PassFilm& film) { film.counters.nan_samples = 1; };
-  Tested tested(renderer.engine());
+  PartialUnderTest tested(renderer.engine());
   const std::string id = tested.service.submit(small_request(16)).id;
   gate.open = 1;
   EXPECT_EQ(tested.service.wait(id).state, api::JobState::failed);
@@ -97,7 +97,7 @@ TEST(PartialImageTest, TheEventStreamSaysThatThereIsMoreToSee) {
   Gate gate;
   FakeRenderer renderer;
   renderer.before_pass = [&](const Pass& pass) { gate.wait_for(pass); };
-  Tested tested(renderer.engine());
+  PartialUnderTest tested(renderer.engine());
   const std::string id = tested.service.submit(small_request(8)).id;
   const HttpResponse response =
       respond(tested.endpoints, {"GET", "/v1/renders/" + id + "/events", {}, {}, {}});
@@ -131,7 +131,7 @@ TEST(PartialImageTest, AnExplorableRenderIsSeenThroughAnyAbsorberWhileItIsTraced
     gate.wait_for(pass);
     return trace_pass(scene, pass, threads, stop);
   };
-  Tested tested(std::move(engine));
+  PartialUnderTest tested(std::move(engine));
   const std::string id = tested.service.submit(explorable_request(16)).id;
   gate.open = 1;
   ASSERT_TRUE(eventually([&] { return tested.service.service.samples_to_see(id) == 4; }));

@@ -9,6 +9,7 @@
 #include "renderer/image_io.h"
 #include "tests/server/fixture.h"
 #include "tests/server/service.h"
+#include "tests/support/sanitized.h"
 
 namespace translucube::server::test {
 namespace {
@@ -20,9 +21,9 @@ using testing::StartsWith;
 
 std::vector<float> pixels(const std::filesystem::path& file) { return read_image(file).pixels; }
 
-/// Takes a second or two, in some fifteen passes.
+/// Takes a few seconds, in some fifteen passes.
 constexpr int steady_samples = 600;
-std::string steady_request() { return small_request(steady_samples, 7, 48); }
+std::string steady_request() { return small_request(steady_samples, 7, sanitized ? 16 : 48); }
 
 std::string state_of(const Service& service, const std::string& location) {
   const json status = service.get(location);
@@ -169,12 +170,7 @@ TEST(ProcessTest, ATerminationEndsStreamsAndTheRenderHasTheBitsOfAnUndisturbedOn
 TEST(ProcessTest, AServiceThatDrainsIsNotReadyAndStillAnswers) {
   const TempFolder folder;
   Service service(folder / "data");
-  // A pass of it takes about a second; sanitized, twenty times as long.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr int size = 256;
-#else
-  constexpr int size = 1024;
-#endif
+  constexpr int size = sanitized ? 128 : 512;  // a pass takes about a second
   const auto posted =
       service.client().Post("/v1/renders", small_request(100'000, 1, size), "application/json");
   const std::string location = posted->get_header_value("Location");
@@ -298,7 +294,8 @@ TEST(CommandLineTest, AFullDiskIsAnErrorInEveryFormatAndLeavesNothing) {
         {"/bin/sh", "-c",
          std::string("ulimit -f 20; trap '' XFSZ; exec " TRANSLUCUBE_BINARY " render - -o ") +
              (folder / name).string()},
-        small_request(4, 1, 256));
+        R"({"material":{"cube":{"absorption":0.3,"roughness":0,"scattering":0}},)"
+        R"("image":{"width":256,"height":256},"quality":{"samples":4}})");
     EXPECT_EQ(process.wait(), 1) << name;
     EXPECT_THAT(process.errors(), testing::Not(IsEmpty())) << name;
     EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << name;

@@ -20,8 +20,8 @@ std::string sweep_request(int samples, const std::string& axes, int size = 8) {
 }
 const std::string some_axes = R"({"absorption":[0,0.5,1],"roughness":[0,0.5],"scattering":[0.4]})";
 
-struct Tested {
-  explicit Tested(Engine engine, ServiceOptions options = {})
+struct SweepsUnderTest {
+  explicit SweepsUnderTest(Engine engine, ServiceOptions options = {})
       : service(folder.path(), std::move(engine), options) {}
 
   api::SweepStatus submit(const std::string& document, std::optional<std::string> key = {}) {
@@ -55,7 +55,7 @@ struct Tested {
 
 TEST(SweepServiceTest, TracesEachPairOfRoughnessAndScatteringOnce) {
   FakeRenderer renderer;
-  Tested tested(renderer.engine());
+  SweepsUnderTest tested(renderer.engine());
   const api::SweepStatus accepted = tested.submit(sweep_request(4, some_axes));
   EXPECT_EQ(accepted.images.size(), 2u);
   const api::SweepStatus sweep = tested.wait(accepted.id);
@@ -71,7 +71,7 @@ TEST(SweepServiceTest, TracesEachPairOfRoughnessAndScatteringOnce) {
 // The promise of design.md, with the real renderer: each lane, the infinite one among them, is the
 // render of its own.
 TEST(SweepServiceTest, APointHasTheBitsOfTheSameRequestAlone) {
-  Tested sweeps({}), alone({});
+  SweepsUnderTest sweeps({}), alone({});
   const std::string axes = R"({"absorption":[1,0,0.6],"roughness":[0,0.6],"scattering":[0,0.5,1]})";
   const std::string document = sweep_request(5, axes, 20);
   const api::SweepStatus sweep = sweeps.wait(sweeps.submit(document).id);
@@ -86,7 +86,7 @@ TEST(SweepServiceTest, APointHasTheBitsOfTheSameRequestAlone) {
 
 TEST(SweepServiceTest, WhatIsThereIsNotRenderedAgain) {
   FakeRenderer renderer;
-  Tested tested(renderer.engine());
+  SweepsUnderTest tested(renderer.engine());
   const api::SweepStatus first = tested.wait(tested.submit(sweep_request(4, some_axes)).id);
   const int passes = renderer.passes;
   const api::SweepStatus again = tested.submit(sweep_request(4, some_axes));
@@ -103,7 +103,7 @@ TEST(SweepServiceTest, WhatIsThereIsNotRenderedAgain) {
 
 TEST(SweepServiceTest, OfWhatIsPartlyThereTheRestIsRendered) {
   FakeRenderer renderer;
-  Tested tested(renderer.engine());
+  SweepsUnderTest tested(renderer.engine());
   tested.wait(tested.submit(sweep_request(4, some_axes)).id);
   const int builds = renderer.builds;
   const api::SweepStatus more = tested.submit(
@@ -145,7 +145,7 @@ TEST(SweepServiceTest, WhatIsThereNeedsNoRoomInTheQueue) {
 
 TEST(SweepServiceTest, APointWhoseSamplesAnotherDecidedIsNotTakenForARenderAlone) {
   FakeRenderer renderer;
-  Tested tested(renderer.engine());
+  SweepsUnderTest tested(renderer.engine());
   const std::string document =
       R"({"base":{"material":{"cube":{"absorption":0,"roughness":0,"scattering":0}},)"
       R"("image":{"width":8,"height":8},"quality":{"relative_error":0.9}},)"
@@ -163,7 +163,7 @@ TEST(SweepServiceTest, AFailedImageDoesNotSinkTheRest) {
   renderer.before_build = [](const SceneSpec& spec) {
     if (spec.material.coefficients.alpha > 0) throw std::runtime_error("no");
   };
-  Tested tested(renderer.engine());
+  SweepsUnderTest tested(renderer.engine());
   const api::SweepStatus sweep = tested.wait(tested.submit(sweep_request(4, some_axes)).id);
   EXPECT_EQ(sweep.state, JobState::succeeded);
   const json answer = json::parse(to_json(sweep));
@@ -180,7 +180,7 @@ TEST(SweepServiceTest, ACanceledSweepKeepsWhatIsFinished) {
   renderer.before_pass = [&](const Pass&) {
     if (renderer.builds == 2) renderer.milliseconds_per_pass = 60'000;
   };
-  Tested tested(renderer.engine());
+  SweepsUnderTest tested(renderer.engine());
   const std::string id = tested.submit(sweep_request(4, some_axes)).id;
   ASSERT_TRUE(eventually([&] { return renderer.milliseconds_per_pass > 0; }));
   EXPECT_EQ(std::get<api::SweepStatus>(tested.service.service.cancel_sweep(id)).state,
@@ -196,7 +196,7 @@ TEST(SweepServiceTest, ACanceledSweepKeepsWhatIsFinished) {
 
 TEST(SweepServiceTest, RemovalTakesTheDataThatNothingElseRefersTo) {
   FakeRenderer renderer;
-  Tested tested(renderer.engine());
+  SweepsUnderTest tested(renderer.engine());
   const api::SweepStatus sweep = tested.wait(tested.submit(sweep_request(4, some_axes)).id);
   const api::RenderStatus kept =
       tested.service.submit(canonical_json(api::point_request(sweep.sweep, 2)));
@@ -212,7 +212,7 @@ TEST(SweepServiceTest, RemovalTakesTheDataThatNothingElseRefersTo) {
 
 TEST(SweepServiceTest, ASheetShowsWhatIsThereAndChangesWithIt) {
   FakeRenderer renderer;
-  Tested tested(renderer.engine(), {0, {}});
+  SweepsUnderTest tested(renderer.engine(), {0, {}});
   const std::string id = tested.submit(sweep_request(4, some_axes, 64)).id;
   const ImageQuery png{ImageFormat::png, {}, {}, {}};
   const auto empty = std::get<ImageFile>(tested.service.service.sheet(id, png));
@@ -221,8 +221,8 @@ TEST(SweepServiceTest, ASheetShowsWhatIsThereAndChangesWithIt) {
   const Task task = *store.claim(Priority::batch);
   const std::string content = store.pictures(task.job_id).at(0).content;
   EXPECT_TRUE(store.fail(task, R"({"type":"x"})"));
-  const auto failed = std::get<ImageFile>(tested.service.service.sheet(id, png));
-  EXPECT_NE(failed.etag, empty.etag);
+  const auto of_failed = std::get<ImageFile>(tested.service.service.sheet(id, png));
+  EXPECT_NE(of_failed.etag, empty.etag);
   EXPECT_EQ(tested.service.artifacts.names(id).size(), 1u) << "the older one is gone";
   EXPECT_TRUE(std::holds_alternative<ImageFile>(
       tested.service.service.sheet(id, {ImageFormat::exr, {}, {}, "ACEScg"})));
@@ -231,7 +231,7 @@ TEST(SweepServiceTest, ASheetShowsWhatIsThereAndChangesWithIt) {
 TEST(SweepServiceTest, AShortRenderOvertakesASweep) {
   FakeRenderer renderer;
   renderer.milliseconds_per_pass = 30;
-  Tested tested(renderer.engine());
+  SweepsUnderTest tested(renderer.engine());
   const std::string sweep =
       tested.submit(sweep_request(4, R"({"roughness":{"from":0,"to":1,"count":20}})")).id;
   const std::string render = tested.service.submit(small_request(4, 7)).id;
@@ -243,7 +243,7 @@ TEST(SweepServiceTest, AShortRenderOvertakesASweep) {
 TEST(SweepServiceTest, OfSeveralWorkersOneIsKeptFreeOfSweeps) {
   FakeRenderer renderer;
   renderer.milliseconds_per_pass = 60'000;
-  Tested tested(renderer.engine(), {2, {}});
+  SweepsUnderTest tested(renderer.engine(), {2, {}});
   tested.submit(sweep_request(4, R"({"roughness":[0,0.5,1]})"));
   ASSERT_TRUE(eventually([&] { return renderer.tracing == 1; }));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -272,7 +272,7 @@ TEST(SweepServiceTest, ARestartGoesOnWithTheSweep) {
 
 TEST(SweepServiceTest, WhatWasAcceptedIsToldWhateverTheLimitsAreNow) {
   FakeRenderer renderer;
-  Tested tested(renderer.engine(), {0, {}});
+  SweepsUnderTest tested(renderer.engine(), {0, {}});
   const api::SweepStatus accepted = tested.submit(sweep_request(4, some_axes));
   tested.service.catalog.limits = {10, 1, 1, 1, 1, 1};
   EXPECT_EQ(to_json(tested.get(accepted.id)), to_json(accepted));
@@ -280,7 +280,7 @@ TEST(SweepServiceTest, WhatWasAcceptedIsToldWhateverTheLimitsAreNow) {
 
 TEST(SweepServiceTest, WhatWasAcceptedIsTracedWhateverTheLimitsAreNow) {
   FakeRenderer renderer;
-  Tested tested(renderer.engine(), {0, {}});
+  SweepsUnderTest tested(renderer.engine(), {0, {}});
   JobStore& store = tested.service.store;
   const api::RenderStatus render = tested.service.submit(small_request(40));
   const api::SweepStatus sweep = tested.submit(sweep_request(4, some_axes));
@@ -297,7 +297,7 @@ TEST(SweepServiceTest, WhatWasAcceptedIsTracedWhateverTheLimitsAreNow) {
 
 TEST(SweepServiceTest, TheLeastRecentlyUsedPicturesMakeRoom) {
   FakeRenderer renderer;
-  Tested tested(renderer.engine());
+  SweepsUnderTest tested(renderer.engine());
   std::vector<std::string> ids;
   for (int seed = 1; seed <= 6; ++seed)
     ids.push_back(tested.service.wait(tested.service.submit(small_request(4, seed)).id).id);

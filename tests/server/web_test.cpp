@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-struct Tested {
+struct WebUnderTest {
   HttpResponse get(const std::string& path, std::map<std::string, std::string> headers = {}) {
     return respond(endpoints, {"GET", path, {}, std::move(headers), {}});
   }
@@ -42,7 +42,7 @@ std::set<std::string> matches(std::string_view text, const char* pattern) {
 }
 
 TEST(WebTest, ThePageAndItsFilesHaveTheirTypesAndAPolicy) {
-  Tested tested;
+  WebUnderTest tested;
   const HttpResponse page = tested.get("/");
   EXPECT_EQ(page.status, 200);
   EXPECT_EQ(page.content_type, "text/html; charset=utf-8");
@@ -51,10 +51,11 @@ TEST(WebTest, ThePageAndItsFilesHaveTheirTypesAndAPolicy) {
     const HttpResponse response = tested.get("/web/" + std::string(file.name));
     EXPECT_EQ(response.status, 200) << file.name;
     EXPECT_NE(response.content_type, "application/octet-stream") << file.name;
-    EXPECT_THAT(Tested::header(response, "Content-Security-Policy"),
+    EXPECT_THAT(WebUnderTest::header(response, "Content-Security-Policy"),
                 StartsWith("default-src 'self'; "));
-    EXPECT_THAT(Tested::header(response, "Content-Security-Policy"), Not(HasSubstr("unsafe")));
-    const std::string etag = Tested::header(response, "ETag");
+    EXPECT_THAT(WebUnderTest::header(response, "Content-Security-Policy"),
+                Not(HasSubstr("unsafe")));
+    const std::string etag = WebUnderTest::header(response, "ETag");
     EXPECT_THAT(etag, StartsWith("\""));
     EXPECT_EQ(tested.get("/web/" + std::string(file.name), {{"if-none-match", etag}}).status, 304);
   }

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/support/repository.h"
+
 namespace translucube::test {
 namespace {
 
@@ -73,8 +75,7 @@ void add_generated(std::vector<MalformedBody>& bodies) {
 }  // namespace
 
 std::vector<MalformedBody> malformed_bodies() {
-  const std::filesystem::path folder =
-      std::filesystem::path(TRANSLUCUBE_SOURCE_DIR) / "tests/api/malformed";
+  const std::filesystem::path folder = in_repository("tests/api/malformed");
   std::istringstream index(file_text(folder / "index.txt"));
   std::vector<MalformedBody> bodies;
   for (std::string line; std::getline(index, line);) {

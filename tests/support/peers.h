@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "tests/support/repository.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {
@@ -34,8 +35,7 @@ inline SceneSpec peer_scene(const Coefficients& coefficients, int size, std::uin
   spec.material.coefficients = coefficients;
   spec.material.absorber = RgbAbsorber{{0.15, 1, 1}};
   spec.object = SphereObject{1};
-  spec.environment.source =
-      ImageEnvironmentSpec{TRANSLUCUBE_SOURCE_DIR "/config/environments/forest.exr"};
+  spec.environment.source = ImageEnvironmentSpec{in_repository("config/environments/forest.exr")};
   spec.camera = {{0, 0, 4.5}, {0, 0, 0}, {0, 1, 0}, 32};
   spec.width = spec.height = size;
   spec.seed = seed;

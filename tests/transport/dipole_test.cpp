@@ -14,6 +14,7 @@
 #include "renderer/material_cube.h"
 #include "tests/support/chi2.h"
 #include "tests/support/meshes.h"
+#include "tests/support/repository.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {
@@ -183,8 +184,7 @@ SceneSpec sphere_spec(double scattering, double absorption, double roughness) {
   spec.material.coefficients = from_cube({absorption, roughness, scattering}, 0, 10);
   spec.material.absorber = RgbAbsorber{{0.15, 1, 1}};
   spec.model = DipoleModel{scattering};
-  spec.environment.source =
-      ImageEnvironmentSpec{TRANSLUCUBE_SOURCE_DIR "/config/environments/forest.exr"};
+  spec.environment.source = ImageEnvironmentSpec{in_repository("config/environments/forest.exr")};
   spec.width = spec.height = 48;
   return spec;
 }

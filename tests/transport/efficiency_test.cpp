@@ -9,11 +9,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/repository.h"
+
 namespace translucube::test {
 namespace {
 
 TEST(Efficiency, OfThePeersMaterialsIsNoLessThanWrittenDown) {
-  std::ifstream file(TRANSLUCUBE_SOURCE_DIR "/tests/transport/efficiency.json");
+  std::ifstream file(in_repository("tests/transport/efficiency.json"));
   const nlohmann::json written = nlohmann::json::parse(file);
   for (const PeerMaterial& material : peer_materials)
     for (const Measure& measure : efficiency(material, 0)) {

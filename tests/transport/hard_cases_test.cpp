@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/repository.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {
@@ -37,7 +38,7 @@ TEST(HardCase, ASunOf34000StaysFiniteAndItsMeanIsThatOfAnotherSeed) {
   for (const double sigma_s : {0.0, 1.0, 10.0}) {
     SceneSpec spec = hard_furnace(1, 0.2, sigma_s, 1.5, 0);
     spec.environment.source =
-        ImageEnvironmentSpec{TRANSLUCUBE_SOURCE_DIR "/config/environments/sunrise.exr"};
+        ImageEnvironmentSpec{in_repository("config/environments/sunrise.exr")};
     const Film first = trace(*build_scene(spec), 256);
     spec.seed = 2;
     const Film second = trace(*build_scene(spec), 256);

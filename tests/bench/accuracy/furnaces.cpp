@@ -3,6 +3,7 @@
 #include "tests/bench/accuracy/sections.h"
 #include "tests/support/hard_cases.h"
 #include "tests/support/meshes.h"
+#include "tests/support/repository.h"
 #include "tests/support/truths.h"
 
 namespace translucube::accuracy {
@@ -122,7 +123,7 @@ Table hard_cases(Run& run) {
   for (const double sigma_s : {0.0, 10.0}) {
     SceneSpec spec = hard_furnace(1, 0.2, sigma_s, 1.5, 0);
     spec.environment.source =
-        ImageEnvironmentSpec{TRANSLUCUBE_SOURCE_DIR "/config/environments/sunrise.exr"};
+        ImageEnvironmentSpec{in_repository("config/environments/sunrise.exr")};
     spec.seed = run.next_seed();
     const Estimate other = image_mean(trace(*build_scene(spec), run.samples(256), run.threads()));
     add_case(table, run, text("sun, alpha 0.2, sigma_s %g / mm", sigma_s), spec, 256,

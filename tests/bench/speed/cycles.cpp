@@ -9,6 +9,7 @@
 #include "tests/bench/speed/sections.h"
 #include "tests/bench/speed/shell.h"
 #include "tests/server/temp_folder.h"
+#include "tests/support/repository.h"
 
 namespace translucube::speed {
 namespace {
@@ -59,9 +60,8 @@ Tables cycles(Run& run) {
   }
   const server::test::TempFolder folder;
   const SceneSpec scene = peer_scene({}, size, 1);
-  std::string command = "blender -b --factory-startup -P " TRANSLUCUBE_SOURCE_DIR
-                        "/tests/bench/cycles.py --"
-                        " --environment " +
+  std::string command = "blender -b --factory-startup -P " +
+                        in_repository("tests/bench/cycles.py").string() + " -- --environment " +
                         std::get<ImageEnvironmentSpec>(scene.environment.source).file.string() +
                         " --out " + folder.path().string() +
                         text(" --size %d --threads %d", size, run.threads);

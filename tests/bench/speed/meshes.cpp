@@ -7,6 +7,7 @@
 #include "renderer/image_io.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
+#include "tests/support/repository.h"
 
 namespace translucube::speed {
 
@@ -71,8 +72,8 @@ Tables meshes(Run& run) {
   add("knot", knot(1000, 50));
   add("knot", knot(4000, 125));
   const Light lights[] = {
-      {"forest", ImageEnvironment(
-                     read_image(TRANSLUCUBE_SOURCE_DIR "/config/environments/forest.exr"), 0, 1)},
+      {"forest",
+       ImageEnvironment(read_image(in_repository("config/environments/forest.exr")), 0, 1)},
       {"white", UniformEnvironment{}}};
   for (const Light& light : lights)
     for (const double sigma_s : sigmas) {
