@@ -76,7 +76,11 @@ class Tracer {
         lights_(lights_of(scene, key)),
         may_come_back_(!shape.convex() ||
                        (scene.backdrop && scene.backdrop->kind == BackdropKind::print)),
-        connector_(make_connector(scene, key)) {}
+        connector_(make_connector(scene, key)),
+        arriving_(tile.queues.arriving),
+        walking_(tile.queues.walking),
+        leaving_(tile.queues.leaving),
+        crossing_(tile.queues.crossing) {}
 
   void run(std::uint32_t pass_index, std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t s = first; s < first + count; ++s) emit(pass_index, s);
@@ -466,8 +470,8 @@ class Tracer {
   /// What was never inside waits apart from the rest: sums of floats depend on their order, and a
   /// black body traced alone must have the bits of a black lane.
   std::array<Escapes, 2> escapes_;
-  std::vector<Path> arriving_, walking_, leaving_;
-  std::vector<Path> crossing_;  ///< at the rough interface
+  std::vector<Path>&arriving_, &walking_, &leaving_;
+  std::vector<Path>& crossing_;  ///< at the rough interface
   MicrosurfaceBatch microsurface_;
 };
 
