@@ -72,14 +72,15 @@ class Collector {
   }
 
   void note(const char* event, const Path& path) {
-    note(event, path.p, path.d, path.length, path.weight);
+    note(event, path.p, path.d, path.length, path.weight, path.pdf);
   }
-  void note(const char* event, Vec3 p, Vec3 d, double length, double weight) {
+  void note(const char* event, Vec3 p, Vec3 d, double length, double weight, double pdf = 0) {
     if (log_ == nullptr) return;
     char line[256];
-    std::snprintf(line, sizeof line,
-                  "%-9s p (%.9g, %.9g, %.9g) d (%.6f, %.6f, %.6f) length %.9g weight %.9g\n", event,
-                  p.x, p.y, p.z, d.x, d.y, d.z, length, weight);
+    std::snprintf(
+        line, sizeof line,
+        "%-9s p (%.9g, %.9g, %.9g) d (%.6f, %.6f, %.6f) length %.9g weight %.9g pdf %.6g\n", event,
+        p.x, p.y, p.z, d.x, d.y, d.z, length, weight, pdf);
     *log_ += line;
   }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "renderer/environment_batch.h"
+#include "renderer/huge_pages.h"
 
 namespace translucube {
 
@@ -26,9 +27,9 @@ int passed(const float* values, float x) {
 }  // namespace
 
 struct ImageEnvironment::Tables {
-  std::vector<Texel> texels;
-  std::vector<double> blocks;
-  std::vector<float> rows, cells;
+  HugePageVector<Texel> texels;
+  HugePageVector<double> blocks;
+  HugePageVector<float> rows, cells;
 };
 
 ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, double scale,
@@ -61,7 +62,7 @@ bool ImageEnvironment::hides(int column) const {
 void ImageEnvironment::build_sampling(Tables& tables) {
   auto& [texels, blocks, rows, cells] = tables;
   // The integral of the bilinear interpolant over a cell is its tent filter (1, 6, 1) / 8.
-  std::vector<double> across;  // the filter along the rows
+  HugePageVector<double> across;  // the filter along the rows
   across.reserve(texels.size());
   for (int y = 0; y < height_; ++y) {
     std::vector<double> row;
@@ -81,7 +82,7 @@ void ImageEnvironment::build_sampling(Tables& tables) {
     return across[std::size_t(std::clamp(y, 0, height_ - 1)) * width_ + x];
   };
   const std::size_t n = texels.size();
-  std::vector<double> weight(n);
+  HugePageVector<double> weight(n);
   std::vector<char> hidden;
   hidden.reserve(width_);
   for (int x = 0; x < width_; ++x) hidden.push_back(hides(x));

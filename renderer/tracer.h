@@ -157,99 +157,23 @@ class Tracer {
       enter_rough(path);
   }
 
+  // ---- inside the body (tracer_walk.h)
+
   /// Flights inside until the boundary.
-  void walk() {
-    if constexpr (connecting) {
-      walk_together();
-    } else if constexpr (open) {
-      for (Path& path : walking_) {
-        Hit hit;
-        if (!cross_body(path, hit)) {
-          collector_.give_up(path);
-          continue;
-        }
-        arrive_inside(path, hit);
-        leaving_.push_back(path);
-      }
-    }
-    walking_.clear();
-  }
-
-  void walk_together() {
-    const WalkMedium medium = connector_.walk_medium();
-    for (std::size_t first = 0; first < walking_.size(); first += SphereWalk::capacity) {
-      const std::span<Path> paths(&walking_[first],
-                                  std::min(SphereWalk::capacity, walking_.size() - first));
-      for (std::size_t i = 0; i < paths.size(); ++i) {
-        Path& path = paths[i];
-        sphere_walk_.push(static_cast<std::uint32_t>(i), path.p, depth2(path), path.d,
-                          path.colliding, path.sampler.rng().bits());
-      }
-      while (sphere_walk_.under_way() > 0) {
-        tile_.counters.flights += sphere_walk_.under_way();
-        sphere_walk_.advance(medium);
-        connector_.connect(sphere_walk_.vertices(), paths);
-        arrive(sphere_walk_.arrivals(), paths);
-      }
-    }
-  }
-
+  void walk();
+  void walk_together();
   /// 1 - |p|^2 of a walk's start.
   static double depth2(const Path& path) {
     return path.p == path.n ? 0 : std::fmax(0.0, 1 - length_squared(path.p));
   }
-
-  void arrive(const SphereWalk::Arrivals& arrivals, std::span<const Path> paths) {
-    for (std::size_t i = 0; i < arrivals.size; ++i) {
-      Path& path = leaving_.emplace_back(paths[arrivals.slot[i]]);
-      path.p = path.n = {arrivals.n_x[i], arrivals.n_y[i], arrivals.n_z[i]};
-      path.d = {arrivals.d_x[i], arrivals.d_y[i], arrivals.d_z[i]};
-      path.length += arrivals.length[i];
-      path.vertex = {{arrivals.from_x[i], arrivals.from_y[i], arrivals.from_z[i]},
-                     arrivals.from_depth2[i],
-                     arrivals.flight[i],
-                     arrivals.phase[i]};
-      path.colliding = false;
-      collector_.note("boundary", path);
-    }
-  }
-
+  /// Where walks of many have come to the boundary.
+  void arrive(const SphereWalk::Arrivals& arrivals, std::span<const Path> paths);
   /// To the boundary; false for a path that lost its way.
-  bool cross_body(Path& path, Hit& hit) {
-    if constexpr (scattering) {
-      return walk_to_boundary(
-          shape_, interior_.medium, path, path.sampler.rng(), hit,
-          [&](auto&& place) { scatter(place, interior_.medium, path, path.sampler.rng()); });
-    } else if constexpr (dense) {
-      // In the half space below the point where it entered, to leave at that very point.
-      const Frame frame(path.n);
-      Particle below{{}, frame.to_local(path.d), path.length};
-      walk_to_boundary(
-          HalfSpace{}, interior_.medium, below, path.sampler.rng(), hit,
-          [&](auto&& place) { scatter(place, interior_.medium, below, path.sampler.rng()); });
-      path.d = frame.to_world(below.d);
-      path.length = below.length;
-      hit.p = path.p;
-      hit.n = path.n;
-      return true;
-    } else {
-      return shape_.exit(path.p, path.d, infinity, hit);
-    }
-  }
-
+  bool cross_body(Path& path, Hit& hit);
   /// `collide(surroundings)` gives the particle its new direction.
   template <class Place, class Collide>
   bool walk_to_boundary(const Place& body, const Medium& medium, Particle& particle, Rng& rng,
-                        Hit& hit, Collide&& collide) {
-    auto&& place = surroundings(body, medium);
-    ++tile_.counters.flights;
-    while (fly(place, medium, particle, rng, hit)) {
-      ++tile_.counters.flights;
-      if (strayed(particle)) return false;
-      collide(place);
-    }
-    return true;
-  }
+                        Hit& hit, Collide&& collide);
 
   /// At a collision.
   void collide(Path& path) {
@@ -317,23 +241,11 @@ class Tracer {
 
   // ---- between stages
 
-  /// Next-event estimation at a rough exit: a direction of the environment, weighted by the balance
-  /// heuristic (Veach 1995) against those that the interface samples itself.
+  /// Next-event estimation at a rough exit (tracer_escapes.h): a direction of the environment,
+  /// weighted by the balance heuristic (Veach 1995) against those that the interface samples
+  /// itself.
   template <class Evaluate>
-  void connect(Path& path, const Frame& frame, Evaluate&& evaluate) {
-    const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
-    // The same from everywhere: nothing to look for.
-    if (environment == nullptr || !scene_.next_event_estimation) return;
-    const EnvironmentSample light = environment->sample(path.sampler.next2());
-    ++tile_.counters.connections;
-    const LobeValue value = evaluate(frame.to_local(light.direction));
-    if (value.f_cos <= 0) return;
-    Hit hit;
-    if (!shape_.convex() && shape_.enter(path.p, light.direction, hit)) return;
-    collector_.note("connect", path);
-    collector_.collect(path, light.value.radiance,
-                       path.weight * value.f_cos / (light.value.pdf + value.pdf));
-  }
+  void connect(Path& path, const Frame& frame, Evaluate&& evaluate);
 
   /// Into the body.
   void inward(Path& path) {
@@ -384,54 +296,9 @@ class Tracer {
     std::array<Escape, EnvironmentBatch::capacity> from;
   };
 
-  /// To the environment, where many look together.
-  void escape(const Path& path) {
-    collector_.note("escape", path);
-    if (scene_.backdrop && path.d.z < 0) {
-      meet_backdrop(path);
-      // Nothing of the environment, but a connection may have taken its share of nothing.
-      if (path.pdf == 0 || std::holds_alternative<UniformEnvironment>(scene_.environment)) return;
-    }
-    if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
-      return collector_.collect(path, uniform->radiance, path.weight);
-    if constexpr (connecting && smooth)
-      if (path.pdf == Path::found_by_connecting)
-        return collector_.collect_carried(
-            path.pixel, path.length, path.tint,
-            connector_.expected(path.n, path.walk) * static_cast<float>(path.weight));
-    Escapes& escapes = escapes_[path.length > 0 ? 1 : 0];
-    EnvironmentBatch& batch = escapes.batch;
-    const std::size_t i = batch.size++;
-    batch.x[i] = static_cast<float>(path.d.x);
-    batch.y[i] = static_cast<float>(path.d.y);
-    batch.z[i] = static_cast<float>(path.d.z);
-    escapes.from[i] = {path.n,    path.length, path.weight, path.pdf,
-                       path.walk, path.pixel,  path.tint};
-    if (batch.size == EnvironmentBatch::capacity) collect(escapes);
-  }
-
-  void collect(Escapes& escapes) {
-    EnvironmentBatch& batch = escapes.batch;
-    if (batch.size == 0) return;
-    batch.look_up(std::get<ImageEnvironment>(scene_.environment));
-    for (std::size_t i = 0; i < batch.size; ++i) {
-      const Escape& from = escapes.from[i];
-      const EnvironmentValue& light = batch.value[i];
-      Rgb radiance = light.radiance;
-      if (from.pdf > 0 && scene_.next_event_estimation) {  // it was looked for as well
-        const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
-        if constexpr (connecting && smooth) {
-          const Rgb expected = connector_.expected(from.n, from.walk) * Connector::far_share;
-          radiance = expected + (radiance - expected) * share;
-        } else {
-          radiance = radiance * share;
-        }
-      }
-      collector_.collect(from.pixel, from.length, from.tint,
-                         radiance * static_cast<float>(from.weight));
-    }
-    batch.size = 0;
-  }
+  /// To the environment, where many look together (tracer_escapes.h).
+  void escape(const Path& path);
+  void collect(Escapes& escapes);
 
   void arrive_inside(Path& path, const Hit& hit) {
     path.length += hit.t;
@@ -498,5 +365,7 @@ void trace_body(const Shape& shape, const Scene& scene, std::uint32_t pass_index
 
 #include "renderer/tracer_backdrop.h"
 #include "renderer/tracer_diffuse.h"
+#include "renderer/tracer_escapes.h"
 #include "renderer/tracer_rough.h"
 #include "renderer/tracer_smooth.h"
+#include "renderer/tracer_walk.h"
