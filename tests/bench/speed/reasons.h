@@ -30,6 +30,10 @@ inline constexpr Reason reasons[] = {
     {"materials, R10", "As R05."},
     {"materials, R25", "As R05."},
     {"materials, R50", "As R05."},
+    {"lanes",
+     "A lane costs what it did, four exp() for each contribution; the trace of S10 that it is held "
+     "against takes half "
+     "of what it took when a lane was within the 5 %."},
     {"cores",
      "On this shared machine the ratio wavers between runs and materials; 1.7 to 2.2 were seen. "
      "Passes end with the slowest tile, and what lies between passes has one thread."},
@@ -46,7 +50,8 @@ inline constexpr Reason reasons[] = {
      "scattering bodies take 1100 to 1800, rough ones 600. What is not the trace: two syncs of the "
      "job's record and two of the picture, which were promised, and small work."},
     {"process",
-     "40 ms of work, half of it the environment's file and its tables; the rest is waiting for the "
+     "80 to 100 ms of work, most of it the environment's file and its tables; the rest is waiting "
+     "for the "
      "disk and for other processes."},
     {"stopping",
      "Pixels that rare light reaches are told too late; the worst are rough bodies at few "
