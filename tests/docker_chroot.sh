@@ -39,7 +39,7 @@ copy() { # from this folder, its files, to the last of the arguments
   shift
   [ "$to" != . ] || to=$folder/
   [[ $to == /* ]] || to=$folder/$to
-  mkdir -p "$root/$(dirname "$to/x")"
+  if [[ $to == */ ]]; then mkdir -p "$root/$to"; else mkdir -p "$root/$(dirname "$to")"; fi
   while [ $# -gt 1 ]; do
     file=$from/$1
     if [ -d "$file" ]; then mkdir -p "$root/$to" && cp -a "$file/." "$root/$to/"; else cp -a "$file" "$root/$to"; fi
@@ -90,6 +90,7 @@ dockerfile() {
 }
 
 serve() { # as docker/compose.yaml: read-only but for /data and /tmp
+  mount -t proc proc /proc  # of this namespace's processes
   ip link set lo up
   local token picture=$work/picture.png pid
   mount --bind "$ROOT" "$ROOT"
