@@ -1,11 +1,10 @@
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <set>
 
 #include "api/faults.h"
 #include "tests/api/fixture.h"
 #include "tests/support/malformed_corpus.h"
-#include "tests/support/sanitized.h"
 
 namespace translucube::api {
 namespace {
@@ -66,17 +65,16 @@ TEST(MalformedCorpus, HasOneFaultForEachBodyThatSaysOneThingWrong) {
 }
 
 TEST(MalformedCorpus, IsAnsweredInMilliseconds) {
-  if (sanitized) GTEST_SKIP() << "the release build holds the time";
-  using Clock = std::chrono::steady_clock;
   double slowest = 0;
   std::string which;
   for (const auto& body : corpus()) {
-    double fastest = 1e9;  // of three: other processes must not fail this test
+    // CPU time, and of three: other processes must not fail this test.
+    double fastest = 1e9;
     for (int i = 0; i < 3; ++i) {
-      const auto start = Clock::now();
+      const std::clock_t start = std::clock();
       const auto result = parse_render_request(body.text, shipped_catalog());
       const std::string answer = to_json(std::get<Problem>(result));
-      const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+      const double ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
       fastest = std::min(fastest, ms);
       if (fastest < 10) break;
     }
@@ -84,7 +82,9 @@ TEST(MalformedCorpus, IsAnsweredInMilliseconds) {
   }
   RecordProperty("slowest", which);
   RecordProperty("milliseconds", std::to_string(slowest));
-  EXPECT_LT(slowest, 2000) << which;  // a mebibyte of hostile keys
+  // A mebibyte of hostile keys in a debug build with sanitizers; a release build needs less than
+  // half.
+  EXPECT_LT(slowest, 2000) << which;
 }
 
 TEST(MalformedCorpus, AnswersStaySmallWhateverTheBody) {

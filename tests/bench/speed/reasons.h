@@ -21,19 +21,17 @@ inline constexpr Reason reasons[] = {
      "(lights .05, the drawn ray .15), as the exact expectation of the exit along the same ways "
      "has .005; .66 the later ways out, .45 of it which way they take inside and the rest again "
      "exits (R05: .61, .18 first, .25 ways; R50: .80, .10 first, .54 ways). So a control variate "
-     "of "
-     "the first way through a prefiltered environment changed nothing (tried, taken out), and two "
-     "levels of paths, cheap ones with expected exits and dear ones for the difference, gain less "
-     "than they cost while the exits are as noisy: both need to fall. Lights drawn in the exit's "
-     "lobe from a prefiltered map, with the rest of the lobe by its drawn ray, are what is left to "
-     "try."},
+     "of the first way through a prefiltered environment changed nothing (tried, taken out), and "
+     "two levels of paths, cheap ones with expected exits and dear ones for the difference, gain "
+     "less than they cost while the exits are as noisy: both need to fall. Lights drawn in the "
+     "exit's lobe from a prefiltered map, with the rest of the lobe by its drawn ray, are what is "
+     "left to try."},
     {"materials, R10", "As R05."},
     {"materials, R25", "As R05."},
     {"materials, R50", "As R05."},
     {"lanes",
      "A lane costs what it did, four exp() for each contribution; the trace of S10 that it is held "
-     "against takes half "
-     "of what it took when a lane was within the 5 %."},
+     "against takes half of what it took when a lane was within the 5 %."},
     {"cores",
      "On this shared machine the ratio wavers between runs and materials; 1.7 to 2.2 were seen. "
      "Passes end with the slowest tile, and what lies between passes has one thread."},
@@ -51,8 +49,7 @@ inline constexpr Reason reasons[] = {
      "job's record and two of the picture, which were promised, and small work."},
     {"process",
      "80 to 100 ms of work, most of it the environment's file and its tables; the rest is waiting "
-     "for the "
-     "disk and for other processes."},
+     "for the disk and for other processes."},
     {"stopping",
      "Pixels that rare light reaches are told too late; the worst are rough bodies at few "
      "samples."},
