@@ -8,9 +8,9 @@
 #include <ctime>
 #include <thread>
 
-#include "renderer/deadline.h"
-#include "renderer/scene_data.h"
-#include "renderer/transport.h"
+#include "renderer/base/deadline.h"
+#include "renderer/scene/scene.h"
+#include "renderer/transport/transport.h"
 
 namespace translucube {
 namespace {
@@ -204,6 +204,26 @@ std::string explain_sample(const Scene& scene, int x, int y, std::uint32_t sampl
   std::snprintf(line, sizeof line, "radiance (%.9g, %.9g, %.9g)\n", radiance.r, radiance.g,
                 radiance.b);
   return log + line;
+}
+
+std::string transport_name(const Scene& scene) { return transport_name(scene.interior); }
+
+ExplorableFilm explorable_film(const Scene& scene, const Film& film) {
+  return explorable_film(scene.spread.value().bins(), scene.unit_mm, film);
+}
+
+Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int threads) {
+  return develop_explorable(film, scene.lanes.front(), threads);
+}
+
+Image develop_shares(const Scene& scene, const Film& film) {
+  return develop_shares(scene.spread.value().bins(), film, scene.lanes.front());
+}
+
+Image develop_shares(const Scene& scene, const Film& film, const Absorber& absorber,
+                     double sigma_a_peak) {
+  return develop_shares(scene.spread.value().bins(), film,
+                        make_lane(absorber, sigma_a_peak * scene.unit_mm));
 }
 
 }  // namespace translucube

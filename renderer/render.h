@@ -10,10 +10,12 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <variant>
 
-#include "renderer/film.h"
-#include "renderer/scene.h"
+#include "renderer/film/explorable.h"
+#include "renderer/film/film.h"
+#include "renderer/scene/spec.h"
 
 namespace translucube {
 
@@ -37,14 +39,7 @@ using Quality = std::variant<SampleTarget, ErrorTarget, TimeTarget>;
 std::optional<Pass> plan_pass(std::uint32_t index, std::uint64_t pixels,
                               std::optional<std::uint32_t> total_samples = {});
 
-/// A scene ready to trace: immutable, shared by threads.
-struct Scene;
-class EnvironmentCache;
-/// Reads the resources, the environment by way of the cache if there is one. Throws SceneError.
-std::shared_ptr<const Scene> build_scene(const SceneSpec& spec,
-                                         EnvironmentCache* environments = nullptr);
-
-/// The transport that the material needs: "interface", "clear", "walk" or "interfaced-lambertian".
+/// The transport that the material needs, by its name (interior.h).
 std::string transport_name(const Scene& scene);
 
 /// Traces one pass on `threads` threads (0: all cores); the bits do not depend on their number.
@@ -91,6 +86,18 @@ RenderResult render(const Scene& scene, const Quality& quality, int threads = 0,
 
 /// Stats of a film rendered by any means.
 RenderStats stats_of(const Scene& scene, const Film& film, double seconds, int threads);
+
+/// What is kept of an explorable scene's film.
+ExplorableFilm explorable_film(const Scene& scene, const Film& film);
+/// The picture through the material of the film's own scene.
+Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int threads = 0);
+/// A film that is still being traced, through the material of its own scene or another absorber.
+Image develop_shares(const Scene& scene, const Film& film);
+Image develop_shares(const Scene& scene, const Film& film, const Absorber& absorber,
+                     double sigma_a_peak);
+
+/// A fingerprint of the renderer's sources: results are kept by it.
+std::string_view engine_version();
 
 /// Replays one camera sample and describes every event of its paths, a line each.
 std::string explain_sample(const Scene& scene, int x, int y, std::uint32_t sample);

@@ -1,4 +1,4 @@
-#include "api/appearance_request.h"
+#include "api/request/appearance_request.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "renderer/absorption.h"
+#include "renderer/film/absorption.h"
 #include "tests/api/fixture.h"
 #include "tests/support/repository.h"
 

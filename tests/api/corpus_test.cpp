@@ -2,7 +2,7 @@
 #include <ctime>
 #include <set>
 
-#include "api/faults.h"
+#include "api/base/faults.h"
 #include "tests/api/fixture.h"
 #include "tests/support/malformed_corpus.h"
 

@@ -1,11 +1,11 @@
-#include "api/event.h"
+#include "api/answer/event.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "api/problem.h"
+#include "api/base/problem.h"
 
 namespace translucube::api {
 namespace {

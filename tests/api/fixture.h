@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "api/parse.h"
+#include "api/request/parse.h"
 #include "tests/support/repository.h"
 
 namespace translucube::api {

@@ -1,4 +1,4 @@
-#include "api/json_reader.h"
+#include "api/base/json_reader.h"
 
 #include <gtest/gtest.h>
 

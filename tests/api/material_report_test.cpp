@@ -1,8 +1,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "renderer/absorption.h"
-#include "renderer/material_cube.h"
+#include "renderer/film/absorption.h"
+#include "renderer/optics/material_cube.h"
 #include "tests/api/fixture.h"
 
 namespace translucube::api {

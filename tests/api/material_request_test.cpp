@@ -45,9 +45,10 @@ TEST(MaterialRequest, DetailsSayWhatIsRight) {
       "must be a number in [1e-06, 1e+06]");
   EXPECT_THAT(fault_at("/material/absorber", material_with(R"("absorber":"x")")),
               HasSubstr("amber, blood, "));
-  EXPECT_EQ(fault_at("/material/iro", material_with(R"("iro":1.5)")),
-            "unknown key; known here: absorber, anisotropy, coefficients, cube, ior, oil_film, pigment, "
-            "reference_thickness_mm");
+  EXPECT_EQ(
+      fault_at("/material/iro", material_with(R"("iro":1.5)")),
+      "unknown key; known here: absorber, anisotropy, coefficients, cube, ior, oil_film, pigment, "
+      "reference_thickness_mm");
 }
 
 TEST(MaterialRequest, ExactlyOneOfCubeAndCoefficients) {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "api/listings.h"
+#include "api/answer/listings.h"
 #include "tests/api/fixture.h"
 
 namespace translucube::api {

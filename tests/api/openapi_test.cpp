@@ -5,9 +5,9 @@
 #include <set>
 #include <sstream>
 
-#include "api/listings.h"
-#include "api/render_status.h"
-#include "api/sweep.h"
+#include "api/answer/listings.h"
+#include "api/answer/render_status.h"
+#include "api/request/sweep.h"
 #include "tests/api/fixture.h"
 
 namespace translucube::api {

@@ -1,11 +1,11 @@
-#include "api/problem.h"
+#include "api/base/problem.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "api/faults.h"
+#include "api/base/faults.h"
 
 namespace translucube::api {
 namespace {

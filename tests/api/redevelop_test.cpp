@@ -1,11 +1,11 @@
-#include "api/redevelop.h"
+#include "api/request/redevelop.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "api/parse.h"
+#include "api/request/parse.h"
 #include "tests/api/fixture.h"
 #include "tests/support/repository.h"
 

@@ -1,4 +1,4 @@
-#include "api/render_status.h"
+#include "api/answer/render_status.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "api/listings.h"
+#include "api/answer/listings.h"
 
 namespace translucube::api {
 namespace {

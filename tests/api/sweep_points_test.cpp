@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "api/sweep.h"
+#include "api/request/sweep.h"
 #include "tests/api/fixture.h"
 
 namespace translucube::api {

@@ -1,9 +1,9 @@
-#include "api/sweep_status.h"
+#include "api/answer/sweep_status.h"
 
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "api/render_status.h"
+#include "api/answer/render_status.h"
 #include "tests/api/fixture.h"
 
 namespace translucube::api {

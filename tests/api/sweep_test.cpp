@@ -1,4 +1,4 @@
-#include "api/sweep.h"
+#include "api/request/sweep.h"
 
 #include <nlohmann/json.hpp>
 #include <set>

@@ -5,7 +5,7 @@
 // asked for do not blur the estimator's own efficiency. "last" is the quantity with the largest
 // error at the end.
 
-#include "renderer/appearance.h"
+#include "renderer/slab/appearance.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,7 +1,7 @@
 // In the renderer's place: a mesh that a request names is the business of Assimp, and would bring
 // the whole renderer with it.
 
-#include "renderer/scene.h"
+#include "renderer/scene/spec.h"
 
 namespace translucube {
 void check_mesh(const std::filesystem::path&) {}

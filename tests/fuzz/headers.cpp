@@ -3,9 +3,9 @@
 
 #include <map>
 
-#include "server/access.h"
-#include "server/http_adapter.h"
-#include "server/http_negotiation.h"
+#include "server/calls/access.h"
+#include "server/http/negotiation.h"
+#include "server/http/wire.h"
 #include "tests/fuzz/requests.h"
 
 using namespace translucube;

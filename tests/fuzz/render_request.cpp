@@ -1,7 +1,7 @@
 // The parser of render requests takes any bytes; what it accepts has a canonical form that means
 // the same.
 
-#include "api/parse.h"
+#include "api/request/parse.h"
 #include "tests/fuzz/requests.h"
 
 using namespace translucube;

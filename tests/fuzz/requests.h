@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "api/catalog.h"
-#include "api/problem.h"
+#include "api/base/problem.h"
+#include "api/request/catalog.h"
 #include "tests/support/repository.h"
 
 namespace translucube::fuzz {

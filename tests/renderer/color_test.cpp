@@ -1,7 +1,7 @@
 // Colour management against the standards' own formulas: every matrix here is computed from
 // primaries and whites, independently of config/display.ocio.
 
-#include "renderer/color.h"
+#include "picture/color.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Contact sheets: pictures land in their cells with their colours, and nothing else changes.
 
-#include "renderer/contact_sheet.h"
+#include "picture/sheet/contact_sheet.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <functional>
 #include <vector>
 
-#include "renderer/reduce.h"
+#include "picture/reduce.h"
 #include "tests/support/repository.h"
 
 namespace translucube {

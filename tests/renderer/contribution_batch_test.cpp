@@ -1,6 +1,6 @@
 // Contributions developed many at a time against the operators that they are made of.
 
-#include "renderer/contribution_batch.h"
+#include "renderer/film/contribution_batch.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -11,7 +11,7 @@
 #include <memory>
 #include <string>
 
-#include "renderer/sampler.h"
+#include "renderer/base/sampler.h"
 #include "tests/support/absorbers.h"
 
 namespace translucube {

@@ -1,4 +1,4 @@
-#include "renderer/environment_cache.h"
+#include "renderer/light/environment_cache.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "renderer/image_io.h"
+#include "picture/image_io.h"
 #include "renderer/render.h"
 #include "tests/support/peers.h"
 

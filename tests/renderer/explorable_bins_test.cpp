@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "renderer/explorable.h"
-#include "renderer/half.h"
+#include "renderer/base/half.h"
+#include "renderer/film/explorable.h"
 #include "tests/support/absorbers.h"
 
 namespace translucube {

@@ -1,6 +1,6 @@
 // Image files: what is written is read back, and what cannot be used is refused by name.
 
-#include "renderer/image_io.h"
+#include "picture/image_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "renderer/material_cube.h"
+#include "renderer/optics/material_cube.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "renderer/mesh.h"
+#include "renderer/shape/mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The layout of contact sheets: nothing overlaps, everything fits, what cannot fit is refused.
 
-#include "renderer/sheet_layout.h"
+#include "picture/sheet/sheet_layout.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

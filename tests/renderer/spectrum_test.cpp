@@ -1,7 +1,7 @@
 // The spectral tables against their published check values, and the basis against the constraints
 // it was solved under.
 
-#include "renderer/spectrum.h"
+#include "renderer/base/spectrum.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The walk in a sphere in SIMD against the scalar one: the same distributions, thin or dense, and
 // the same bits on every instruction set that fuses alike.
 
-#include "renderer/sphere_walk.h"
+#include "renderer/transport/sphere/sphere_walk.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/lambertian.h"
+#include "renderer/optics/lambertian.h"
 #include "tests/support/walks.h"
 
 namespace translucube::test {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "renderer/explorable.h"
-#include "renderer/half.h"
-#include "renderer/image_io.h"
-#include "renderer/material_cube.h"
+#include "picture/image_io.h"
+#include "renderer/base/half.h"
+#include "renderer/film/explorable.h"
+#include "renderer/optics/material_cube.h"
 #include "renderer/render.h"
-#include "renderer/scene_data.h"
+#include "renderer/scene/scene.h"
 #include "tests/support/absorbers.h"
 
 namespace translucube {

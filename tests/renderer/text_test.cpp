@@ -1,6 +1,6 @@
 // Text: where its ink lies, how it is shortened, and what numbers are called.
 
-#include "renderer/text.h"
+#include "picture/sheet/text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Who is let in, by requests written by hand.
 
-#include "server/access.h"
+#include "server/calls/access.h"
 
 #include <gmock/gmock.h>
 

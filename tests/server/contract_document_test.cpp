@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "server/endpoints.h"
+#include "server/calls/router.h"
 #include "tests/server/contract.h"
 
 namespace translucube::server::test {

@@ -3,8 +3,8 @@
 // The service as it is served, socket and all, but for its renderer; and a client that holds every
 // answer against the OpenAPI document.
 
-#include "server/endpoints.h"
-#include "server/front.h"
+#include "server/calls/front.h"
+#include "server/calls/router.h"
 #include "tests/server/contract.h"
 
 namespace translucube::server::test {

@@ -1,7 +1,7 @@
 // The OpenAPI document is what the service does: every operation is called, and every status that
 // it lists is provoked and its answer held against its schema.
 
-#include "server/http_problems.h"
+#include "server/http/problems.h"
 #include "tests/server/contract_service.h"
 #include "tests/server/sockets.h"
 

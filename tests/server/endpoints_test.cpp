@@ -1,12 +1,11 @@
 // The calls of the service with requests made by hand: no sockets.
 
-#include "server/endpoints.h"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "server/calls/router.h"
 #include "tests/server/fixture.h"
 
 namespace translucube::server::test {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "server/endpoints.h"
+#include "server/calls/router.h"
 #include "tests/server/fixture.h"
 
 namespace translucube::server::test {

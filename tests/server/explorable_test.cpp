@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "renderer/image_io.h"
-#include "server/endpoints.h"
+#include "picture/image_io.h"
+#include "server/calls/router.h"
 #include "tests/server/fixture.h"
 
 namespace translucube::server::test {

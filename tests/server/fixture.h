@@ -12,14 +12,14 @@
 #include <string>
 #include <thread>
 
-#include "api/catalog.h"
-#include "renderer/color.h"
-#include "server/artifact_store.h"
-#include "server/data_folder.h"
-#include "server/engine.h"
-#include "server/file.h"
-#include "server/job_service.h"
-#include "server/job_store.h"
+#include "api/request/catalog.h"
+#include "picture/color.h"
+#include "server/base/file.h"
+#include "server/service/job_service.h"
+#include "server/store/artifact_store.h"
+#include "server/store/data_folder.h"
+#include "server/store/job_store.h"
+#include "server/worker/engine.h"
 #include "tests/server/temp_folder.h"
 #include "tests/support/repository.h"
 

@@ -1,8 +1,7 @@
-#include "server/http_negotiation.h"
-
 #include <gtest/gtest.h>
 
-#include "server/http_adapter.h"
+#include "server/http/negotiation.h"
+#include "server/http/wire.h"
 
 namespace translucube::server {
 namespace {

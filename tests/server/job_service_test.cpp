@@ -1,4 +1,4 @@
-#include "server/job_service.h"
+#include "server/service/job_service.h"
 
 #include <gmock/gmock.h>
 

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "renderer/image_io.h"
+#include "picture/image_io.h"
 #include "tests/server/siege.h"
 
 namespace translucube::server::test {

@@ -1,4 +1,4 @@
-#include "server/metrics.h"
+#include "server/base/metrics.h"
 
 #include <gmock/gmock.h>
 
@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
-#include "server/front.h"
-#include "server/log.h"
+#include "server/base/log.h"
+#include "server/calls/front.h"
 
 namespace translucube::server::test {
 namespace {

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/file.h"
+#include "server/base/file.h"
 
 namespace translucube::server::test {
 

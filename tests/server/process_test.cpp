@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "renderer/image_io.h"
+#include "picture/image_io.h"
 #include "tests/server/fixture.h"
 #include "tests/server/service.h"
 #include "tests/support/sanitized.h"

@@ -6,7 +6,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
-#include "renderer/image_io.h"
+#include "picture/image_io.h"
 #include "tests/server/fixture.h"
 
 namespace translucube::server::test {

@@ -1,14 +1,13 @@
 // The service over a real socket: what the library would do wrong by itself.
 
-#include "server/routes.h"
-
 #include <gmock/gmock.h>
 #include <httplib.h>
 
 #include <nlohmann/json.hpp>
 
-#include "server/endpoints.h"
-#include "server/front.h"
+#include "server/calls/front.h"
+#include "server/calls/router.h"
+#include "server/http/server.h"
 #include "tests/server/fixture.h"
 #include "tests/server/wire.h"
 #include "tests/support/malformed_corpus.h"

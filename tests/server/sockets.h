@@ -9,7 +9,7 @@
 #include <condition_variable>
 #include <mutex>
 
-#include "server/front.h"
+#include "server/calls/front.h"
 #include "tests/server/fixture.h"
 #include "tests/server/wire.h"
 

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "renderer/image_io.h"
-#include "server/job_store_sqlite.h"
+#include "picture/image_io.h"
+#include "server/store/sqlite/job_store_sqlite.h"
 #include "tests/server/fixture.h"
 #include "tests/support/repository.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "api/parse.h"
-#include "api/sweep.h"
+#include "api/request/parse.h"
+#include "api/request/sweep.h"
 #include "tests/server/fixture.h"
 
 namespace translucube::server::test {

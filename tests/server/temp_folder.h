@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/ids.h"
+#include "server/base/ids.h"
 
 namespace translucube::server::test {
 

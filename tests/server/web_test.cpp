@@ -5,8 +5,8 @@
 #include <regex>
 #include <set>
 
-#include "server/endpoints.h"
-#include "server/web_files.h"
+#include "server/calls/router.h"
+#include "server/calls/web_files.h"
 #include "tests/server/fixture.h"
 
 namespace translucube::server::test {

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/file.h"
+#include "server/base/file.h"
 
 namespace translucube::server::test {
 

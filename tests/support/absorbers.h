@@ -2,7 +2,7 @@
 
 // Absorbers, and what developing them from bins may be off by.
 
-#include "renderer/material.h"
+#include "renderer/optics/material.h"
 
 namespace translucube {
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/vec.h"
+#include "renderer/base/vec.h"
 
 namespace translucube::test {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "renderer/explorable.h"
-#include "renderer/material_cube.h"
+#include "renderer/film/explorable.h"
+#include "renderer/optics/material_cube.h"
 #include "renderer/render.h"
-#include "renderer/scene_data.h"
+#include "renderer/scene/scene.h"
 #include "tests/support/absorbers.h"
 
 namespace translucube::test {

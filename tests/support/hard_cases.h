@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "renderer/scene.h"
+#include "renderer/scene/spec.h"
 
 namespace translucube::test {
 

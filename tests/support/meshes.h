@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-#include "renderer/mesh.h"
+#include "renderer/shape/mesh.h"
 
 namespace translucube::test {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "renderer/microsurface.h"
+#include "renderer/optics/microsurface.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {

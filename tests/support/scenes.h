@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "renderer/render.h"
-#include "renderer/scene_data.h"
+#include "renderer/scene/scene.h"
 
 namespace translucube::test {
 
@@ -37,7 +37,7 @@ inline void look_from_afar(Scene& scene, double half, int size) {
                         2 * std::atan(half / distance) * 180 / std::numbers::pi, size, size);
 }
 
-inline Scene body(Shape shape, const Material& material, std::uint64_t seed = 1) {
+inline Scene body(AnyShape shape, const Material& material, std::uint64_t seed = 1) {
   Scene scene;
   scene.seed = seed;
   scene.shape = std::move(shape);

@@ -2,7 +2,7 @@
 
 // Flat slabs to measure, and what to read of them.
 
-#include "renderer/appearance.h"
+#include "renderer/slab/appearance.h"
 
 namespace translucube::test {
 

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "renderer/fresnel.h"
-#include "renderer/lambertian.h"
-#include "renderer/walk.h"
+#include "renderer/optics/fresnel.h"
+#include "renderer/optics/lambertian.h"
+#include "renderer/transport/walk.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {
@@ -31,14 +31,14 @@ inline Estimate over_the_disc(const Estimate& image, double background) {
 }
 
 /// The length inside [radii] of parallel light on a shape that looks like a unit sphere.
-inline Scene path_scene(Shape shape, const Material& m, std::uint64_t seed = 1, int size = 64) {
+inline Scene path_scene(AnyShape shape, const Material& m, std::uint64_t seed = 1, int size = 64) {
   Scene scene = body(std::move(shape), m, seed);
   scene.lanes = {LengthLane{}};
   look_from_afar(scene, 1.0, size);
   return scene;
 }
 /// Its mean for each ray that meets the shape.
-inline Estimate mean_path_of(Shape shape, const Material& m, std::uint32_t samples,
+inline Estimate mean_path_of(AnyShape shape, const Material& m, std::uint32_t samples,
                              std::uint64_t seed = 1, int threads = 0, int size = 64) {
   const Scene scene = path_scene(std::move(shape), m, seed, size);
   return over_the_disc(image_mean(trace(scene, samples, threads)), 0);

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
-#include "renderer/fresnel.h"
-#include "renderer/lambertian.h"
-#include "renderer/walk.h"
+#include "renderer/optics/fresnel.h"
+#include "renderer/optics/lambertian.h"
+#include "renderer/transport/walk.h"
 
 namespace translucube::test {
 

@@ -6,10 +6,10 @@
 #include <ctime>
 #include <numbers>
 
-#include "renderer/absorption.h"
-#include "renderer/sampler.h"
-#include "renderer/slab_walk.h"
-#include "renderer/spectrum.h"
+#include "renderer/base/sampler.h"
+#include "renderer/base/spectrum.h"
+#include "renderer/film/absorption.h"
+#include "renderer/slab/walk.h"
 #include "tests/support/slabs.h"
 
 namespace translucube::test {

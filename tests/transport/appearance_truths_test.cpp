@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "renderer/fresnel.h"
-#include "renderer/lambertian.h"
-#include "renderer/microsurface.h"
+#include "renderer/optics/fresnel.h"
+#include "renderer/optics/lambertian.h"
+#include "renderer/optics/microsurface.h"
 #include "tests/support/slabs.h"
 
 namespace translucube::test {

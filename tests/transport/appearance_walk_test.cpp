@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "renderer/slab_walk.h"
+#include "renderer/slab/walk.h"
 #include "tests/support/slabs.h"
 
 namespace translucube::test {

@@ -1,7 +1,7 @@
 // The patterned plane behind a body: furnaces that it must not spoil, and plates on it with known
 // answers.
 
-#include "renderer/backdrop.h"
+#include "renderer/light/backdrop.h"
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ Backdrop plain(BackdropKind kind, float value, double back, double distance) {
 }
 
 struct Placed {
-  Shape shape;
+  AnyShape shape;
   double back;
 };
 std::vector<Placed> bodies() {

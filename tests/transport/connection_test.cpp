@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "renderer/exit_batch.h"
-#include "renderer/fresnel.h"
+#include "renderer/optics/fresnel.h"
+#include "renderer/transport/sphere/smooth_exits_batch.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {

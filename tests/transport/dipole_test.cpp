@@ -1,6 +1,6 @@
 // The paper's model: the dipole against its closed forms, its sampling, and the ends of w.
 
-#include "renderer/dipole.h"
+#include "renderer/optics/dipole.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include "renderer/dipole_exit.h"
-#include "renderer/fresnel.h"
-#include "renderer/material_cube.h"
+#include "renderer/optics/fresnel.h"
+#include "renderer/optics/material_cube.h"
+#include "renderer/transport/dipole_exit.h"
 #include "tests/support/chi2.h"
 #include "tests/support/meshes.h"
 #include "tests/support/repository.h"
@@ -110,9 +110,10 @@ TEST(DipoleColor, OfAFlatSpectrumIsGrey) {
 }
 
 /// The dipole alone in a white furnace: no light crosses the body, no plastic.
-Scene dipole_alone(Shape shape, const Material& m, double reach) {
+Scene dipole_alone(AnyShape shape, const Material& m, double reach) {
   Scene scene = body(std::move(shape), m);
-  scene.interior = make_dipole(m, 1, 0.5, reach, {{m.absorber, m.coefficients.sigma_a_peak}});
+  scene.interior =
+      make_dipole(m, scene.interface, 1, 0.5, reach, {{m.absorber, m.coefficients.sigma_a_peak}});
   auto& dipole = std::get<DipoleInterior>(scene.interior);
   dipole.clear_share = 0;
   dipole.here = dipole.radii.local() ? dipole.here : 0;
@@ -235,8 +236,9 @@ TEST(DipoleModel, IsFiniteAtAnyDensityAndIndex) {
         m.coefficients.sigma_a_peak = absorption;
         m.absorber = RgbAbsorber{{0, 0.5, 1}};
         for (const bool mesh : {false, true}) {
-          Scene scene = body(mesh ? Shape{build_mesh(box({1, 1, 1})).mesh} : Shape{Sphere{}}, m);
-          scene.interior = make_dipole(m, 1, 0.3, 2, {{m.absorber, absorption}});
+          Scene scene =
+              body(mesh ? AnyShape{build_mesh(box({1, 1, 1})).mesh} : AnyShape{Sphere{}}, m);
+          scene.interior = make_dipole(m, scene.interface, 1, 0.3, 2, {{m.absorber, absorption}});
           scene.lanes = {make_lane(m.absorber, absorption)};
           look_from_afar(scene, 0.7, 8);
           const Film film = trace(scene, 8);
@@ -273,7 +275,8 @@ TEST(DipoleModel, StaysBoundedWhereBodiesLightThemselves) {
   const BuiltMesh built = build_mesh(knot(96, 24, 0.35));
   for (const double w : {0.1, 0.5}) {
     Scene scene = body(built.mesh, material(1.5, 0, 4));
-    scene.interior = make_dipole(material(1.5, 0, 4), 1, w, 2, {{RgbAbsorber{}, 0}});
+    scene.interior =
+        make_dipole(material(1.5, 0, 4), scene.interface, 1, w, 2, {{RgbAbsorber{}, 0}});
     look_from_afar(scene, 1, 24);
     const Film film = trace(scene, 32);
     EXPECT_EQ(film.counters.nan_samples, 0u);

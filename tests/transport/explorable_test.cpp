@@ -1,13 +1,13 @@
 // Explorable renders against renders with exact lanes of the same paths.
 
-#include "renderer/explorable.h"
+#include "renderer/film/explorable.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <numeric>
 
-#include "renderer/material_cube.h"
+#include "renderer/optics/material_cube.h"
 #include "tests/support/absorbers.h"
 #include "tests/support/explorable_error.h"
 #include "tests/support/scenes.h"

@@ -1,7 +1,7 @@
 // Rough interfaces in SIMD: the values are those of the scalar microsurface, the two ways to light
 // add up, and the instruction sets agree.
 
-#include "renderer/microsurface_batch.h"
+#include "renderer/optics/microsurface_batch.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "renderer/microsurface.h"
-#include "renderer/walk.h"
+#include "renderer/optics/microsurface.h"
+#include "renderer/transport/walk.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {

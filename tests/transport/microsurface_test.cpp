@@ -1,7 +1,7 @@
 // Multiple scattering between microfacets: no energy lost, reciprocity, and the single scattering
 // of other renderers as its first term.
 
-#include "renderer/microsurface.h"
+#include "renderer/optics/microsurface.h"
 
 #include <gtest/gtest.h>
 

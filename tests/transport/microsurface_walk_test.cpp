@@ -8,8 +8,8 @@
 #include <cmath>
 #include <memory>
 
-#include "renderer/microsurface.h"
-#include "renderer/microsurface_batch.h"
+#include "renderer/optics/microsurface.h"
+#include "renderer/optics/microsurface_batch.h"
 #include "tests/support/chi2.h"
 
 namespace translucube::test {

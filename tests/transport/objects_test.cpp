@@ -19,7 +19,7 @@ using std::numbers::pi;
 /// A body, within the unit ball, whose volume is known.
 struct Body {
   std::string name;
-  Shape shape;
+  AnyShape shape;
   double volume;
 };
 

@@ -12,16 +12,16 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Scene oiled(Shape shape, const Material& m, double offset, std::uint64_t seed = 1) {
+Scene oiled(AnyShape shape, const Material& m, double offset, std::uint64_t seed = 1) {
   Scene scene = body(std::move(shape), m, seed);
   scene.oiled = OiledPart{{1, 0, 0}, offset};
   return scene;
 }
 
 void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
-  const Shape shapes[] = {Sphere{}, make_box({0.6, 0.5, 0.2}), Bowl(0.8),
-                          build_mesh(icosphere(3)).mesh};
-  for (const Shape& shape : shapes)
+  const AnyShape shapes[] = {Sphere{}, make_box({0.6, 0.5, 0.2}), Bowl(0.8),
+                             build_mesh(icosphere(3)).mesh};
+  for (const AnyShape& shape : shapes)
     for (const Material& m : {material(1.5, 0.3, 0), material(1.5, 0.3, 4), material(1.33, 1, 50),
                               material(1.5, 0.3, infinity)}) {
       Scene scene = oiled(shape, m, 0);

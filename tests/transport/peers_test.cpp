@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "renderer/lambertian.h"
-#include "renderer/microsurface.h"
+#include "renderer/optics/lambertian.h"
+#include "renderer/optics/microsurface.h"
 
 namespace translucube::test {
 namespace {

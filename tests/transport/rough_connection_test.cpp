@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "renderer/rough_exit_batch.h"
+#include "renderer/transport/sphere/rough_exits_batch.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "renderer/environment.h"
-#include "renderer/lambertian.h"
-#include "renderer/medium.h"
-#include "renderer/microsurface.h"
+#include "renderer/light/environment.h"
+#include "renderer/optics/lambertian.h"
+#include "renderer/optics/medium.h"
+#include "renderer/optics/microsurface.h"
 #include "tests/support/chi2.h"
 
 namespace translucube::test {

@@ -1,12 +1,11 @@
 // Adding and doubling against walks, and against itself at the ends of what it takes.
 
-#include "renderer/slab_adding.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "renderer/slab_walk.h"
+#include "renderer/slab/adding.h"
+#include "renderer/slab/walk.h"
 #include "tests/support/slabs.h"
 
 namespace translucube::test {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "renderer/appearance.h"
+#include "renderer/slab/appearance.h"
 #include "tests/support/truths.h"
 
 namespace translucube::test {

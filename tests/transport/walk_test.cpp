@@ -1,7 +1,7 @@
 // The walk with large steps against the plain analog walk, and its positions in bodies of any
 // density.
 
-#include "renderer/walk.h"
+#include "renderer/transport/walk.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,8 @@
 #include <cmath>
 #include <vector>
 
-#include "renderer/lambertian.h"
+#include "renderer/optics/lambertian.h"
+#include "renderer/shape/sphere.h"
 #include "tests/support/walks.h"
 
 namespace translucube::test {

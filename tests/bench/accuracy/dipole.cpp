@@ -1,7 +1,7 @@
-// What the paper's model costs in error and saves in time (renderer/dipole.h), over the scattering
-// coordinate of the cube.
+// What the paper's model costs in error and saves in time (renderer/optics/dipole.h), over the
+// scattering coordinate of the cube.
 
-#include "renderer/material_cube.h"
+#include "renderer/optics/material_cube.h"
 #include "tests/bench/accuracy/images.h"
 #include "tests/bench/accuracy/sections.h"
 
@@ -24,7 +24,7 @@ Table dipole(Run& run) {
   Table table{
       "dipole", "The paper's model against exact transport",
       "`\"model\": \"dipole\"`: Jensen's dipole (2001) beside a cross-fade of dielectric and "
-      "plastic, as Gerardin et al. 2019 have it (renderer/dipole.h says how its energy is "
+      "plastic, as Gerardin et al. 2019 have it (renderer/optics/dipole.h says how its energy is "
       "balanced), on the peers' scene, smooth and without absorption. White furnace: 1 where "
       "energy is kept; between s = 0 and 1 the model does not, and no figure here is held to "
       "it. Luminance: mean over the image, over that of exact transport. relMSE: mean (x - "

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "renderer/sampler.h"
+#include "renderer/base/sampler.h"
 #include "tests/support/chi2.h"
 
 namespace translucube::accuracy {

@@ -98,7 +98,7 @@ Table walks(Run& run) {
     const Material m = material(1.5, 0, sigma_s);
     Estimate means[2];
     for (const bool mesh : {false, true}) {
-      Shape shape = Sphere{};
+      AnyShape shape = Sphere{};
       if (mesh) shape = build_mesh(icosphere(6)).mesh;
       Scene scene = body(shape, m, run.next_seed());
       scene.environment = half_space_light(true);

@@ -1,6 +1,6 @@
-// Flat slabs: rendered, and by the instruments' optics of renderer/appearance.h.
+// Flat slabs: rendered, and by the instruments' optics of renderer/slab/appearance.h.
 
-#include "renderer/appearance.h"
+#include "renderer/slab/appearance.h"
 #include "tests/bench/accuracy/sections.h"
 #include "tests/support/truths.h"
 
@@ -60,7 +60,7 @@ Table slabs(Run& run) {
 Table slab_appearances(Run& run) {
   Table table{
       "appearance", "Slabs, by `translucube appearance`",
-      "The same slabs through the optics of flat samples (renderer/appearance.h), whose walks "
+      "The same slabs through the optics of flat samples (renderer/slab/appearance.h), whose walks "
       "are not the renderer's."};
   Material m;
   const auto measure = [&](double ior, double sigma_s, double sigma_a, double g, double thickness,

@@ -12,7 +12,7 @@ using namespace test;
 Table microsurfaces(Run& run) {
   Table table{
       "microsurface", "Microsurface",
-      "GGX with all orders of scattering between its microfacets (renderer/microsurface.h). "
+      "GGX with all orders of scattering between its microfacets (renderer/optics/microsurface.h). "
       "Reciprocity: the value of the BSDF, per index squared, over that with the directions "
       "exchanged; directions at cosines 0.8 and 0.35, transmission 0.8 and 0.5. Directional "
       "albedo: reflectance plus "

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "renderer/reduce.h"
-#include "renderer/vec.h"
+#include "picture/reduce.h"
+#include "renderer/base/vec.h"
 
 namespace translucube::figures {
 namespace {

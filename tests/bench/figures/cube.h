@@ -1,7 +1,7 @@
 #pragma once
 
-#include "renderer/contact_sheet.h"
-#include "renderer/text.h"
+#include "picture/sheet/contact_sheet.h"
+#include "picture/sheet/text.h"
 #include "tests/bench/figures/figure.h"
 
 namespace translucube::figures {

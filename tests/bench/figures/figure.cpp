@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "api/parse.h"
-#include "api/sweep.h"
-#include "renderer/environment_cache.h"
-#include "renderer/film.h"
+#include "api/request/parse.h"
+#include "api/request/sweep.h"
+#include "renderer/film/film.h"
+#include "renderer/light/environment_cache.h"
 #include "renderer/render.h"
 
 namespace translucube::figures {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "api/catalog.h"
-#include "renderer/image.h"
-#include "renderer/sheet_layout.h"
+#include "api/request/catalog.h"
+#include "picture/image.h"
+#include "picture/sheet/sheet_layout.h"
 
 namespace translucube::figures {
 

@@ -6,9 +6,9 @@
 #include <exception>
 #include <fstream>
 
-#include "renderer/color.h"
-#include "renderer/contact_sheet.h"
-#include "renderer/image_io.h"
+#include "picture/color.h"
+#include "picture/image_io.h"
+#include "picture/sheet/contact_sheet.h"
 #include "tests/bench/figures/cube.h"
 #include "tests/bench/figures/document.h"
 #include "tests/bench/figures/figure.h"

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "renderer/image_io.h"
+#include "picture/image_io.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
 #include "tests/bench/speed/shell.h"

@@ -1,6 +1,6 @@
 // How the error falls with time, for each material and model.
 
-#include "renderer/material_cube.h"
+#include "renderer/optics/material_cube.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/sampler.h"
+#include "renderer/base/sampler.h"
 #include "tests/bench/report/text.h"
 
 namespace translucube::speed {

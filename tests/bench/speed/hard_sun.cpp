@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "renderer/scene_data.h"
+#include "renderer/scene/scene.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
 #include "tests/bench/speed/sunrise.h"

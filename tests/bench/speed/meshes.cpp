@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "renderer/image_io.h"
+#include "picture/image_io.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
 #include "tests/support/repository.h"
@@ -23,7 +23,7 @@ constexpr double sigmas[] = {1, 10, 100};
 constexpr std::uint32_t two_passes = 8;  // tell the error of the mean
 
 /// The bounding sphere just fills the picture.
-Scene framed(const Shape& shape, const Material& material, const Environment& light,
+Scene framed(const AnyShape& shape, const Material& material, const Environment& light,
              std::uint64_t seed) {
   Scene scene = body(shape, material, seed);
   scene.environment = light;
@@ -33,7 +33,7 @@ Scene framed(const Shape& shape, const Material& material, const Environment& li
 }
 
 /// Share of the camera samples that meet the body.
-double coverage_of(const Shape& shape, Run& run) {
+double coverage_of(const AnyShape& shape, Run& run) {
   Scene scene = framed(shape, material(1, 0, 0), UniformEnvironment{}, run.next_seed());
   scene.interior = BlackInterior{};
   return 1 - image_mean(test::trace(scene, 16, run.threads)).mean;
@@ -58,12 +58,12 @@ Tables meshes(Run& run) {
       "the body."};
   struct Body {
     std::string name;
-    Shape shape;
+    AnyShape shape;
     double coverage;
   };
   std::vector<Body> bodies{{"sphere", Sphere{}, coverage_of(Sphere{}, run)}};
   const auto add = [&](const char* name, const TriangleMesh& mesh) {
-    const Shape shape = build_mesh(mesh).mesh;
+    const AnyShape shape = build_mesh(mesh).mesh;
     bodies.push_back(
         {text("%s of %zu", name, mesh.triangles.size()), shape, coverage_of(shape, run)});
   };

@@ -10,14 +10,14 @@
 #include <memory>
 #include <sstream>
 
-#include "renderer/environment_batch.h"
-#include "renderer/exit_batch.h"
-#include "renderer/fresnel.h"
-#include "renderer/microsurface.h"
-#include "renderer/microsurface_batch.h"
-#include "renderer/scene_data.h"
-#include "renderer/sphere_exit.h"
-#include "renderer/walk.h"
+#include "renderer/light/environment_batch.h"
+#include "renderer/optics/fresnel.h"
+#include "renderer/optics/microsurface.h"
+#include "renderer/optics/microsurface_batch.h"
+#include "renderer/scene/scene.h"
+#include "renderer/transport/sphere/smooth_exits.h"
+#include "renderer/transport/sphere/smooth_exits_batch.h"
+#include "renderer/transport/walk.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
 #include "tests/bench/speed/shell.h"

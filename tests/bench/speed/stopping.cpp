@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderer/deadline.h"
-#include "renderer/material_cube.h"
-#include "renderer/scene_data.h"
+#include "renderer/base/deadline.h"
+#include "renderer/optics/material_cube.h"
+#include "renderer/scene/scene.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
 #include "tests/bench/speed/sunrise.h"

@@ -3,8 +3,8 @@
 
 #include <chrono>
 
-#include "renderer/explorable.h"
-#include "renderer/material_cube.h"
+#include "renderer/film/explorable.h"
+#include "renderer/optics/material_cube.h"
 #include "tests/bench/report/files.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"

@@ -1,0 +1,117 @@
+// Pictures as EXR: R, G and B with their metadata.
+
+#include "picture/exr/exr.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
+#include <array>
+#include <cctype>
+#include <optional>
+#include <vector>
+
+#include "picture/image_io_rules.h"
+
+namespace translucube {
+namespace {
+
+/// The names of R, G and B: three times the one of grey, with or without alpha.
+std::array<std::string, 3> color_channels(const std::filesystem::path& file,
+                                          const Imf::ChannelList& channels) {
+  std::array<std::string, 3> rgb;
+  std::vector<std::string> names;
+  for (auto it = channels.begin(); it != channels.end(); ++it) {
+    const std::string name = names.emplace_back(it.name());
+    const auto color = std::string_view("RGB").find(
+        static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))));
+    if (name.size() == 1 && color != std::string_view::npos) rgb[color] = name;
+  }
+  if (!rgb[0].empty() && !rgb[1].empty() && !rgb[2].empty()) return rgb;
+  if (names.size() == 1 || names.size() == 2) {
+    const std::string& grey = names[0] == "A" ? names.back() : names[0];
+    return {grey, grey, grey};
+  }
+  fail_image(file, "no channels named R, G and B");
+}
+
+Imf::Slice float_slice(const Image& image, const Imath::Box2i& window, int channel) {
+  constexpr std::size_t pixel = 3 * sizeof(float);
+  // OpenEXR takes one kind of slice for reading and for writing.
+  auto* const first = const_cast<float*>(image.pixels.data() + channel);
+  return Imf::Slice::Make(Imf::FLOAT, first, window, pixel, pixel * image.width);
+}
+
+/// Red, green, blue and white of the colorspaces that are scene-linear.
+std::optional<Imf::Chromaticities> chromaticities(const std::string& colorspace) {
+  if (colorspace == "lin_rec709") return Imf::Chromaticities();
+  if (colorspace == "ACEScg")  // AP1 and the ACES white (S-2014-004)
+    return Imf::Chromaticities({0.713f, 0.293f}, {0.165f, 0.830f}, {0.128f, 0.044f},
+                               {0.32168f, 0.33767f});
+  if (colorspace == "XYZ")
+    return Imf::Chromaticities({1, 0}, {0, 1}, {0, 0}, {1.0f / 3.0f, 1.0f / 3.0f});
+  return {};
+}
+
+ImageMetadata metadata_of(const Imf::Header& header) {
+  return {.request = text_attribute(header, request_attribute),
+          .colorspace = text_attribute(header, colorspace_attribute)};
+}
+
+}  // namespace
+
+Image read_exr(const std::filesystem::path& file) {
+  Image image;
+  ImageMetadata metadata;
+  read_exr_file(file, [&](Imf::InputFile& input) {
+    const Imf::Header& header = input.header();
+    const Imath::Box2i& window = header.dataWindow();
+    const std::array<std::string, 3> channels = color_channels(file, header.channels());
+    image = Image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
+    Imf::FrameBuffer pixels;
+    for (int c = 0; c < 3; ++c) {
+      if (header.channels()[channels[c].c_str()].type == Imf::UINT)
+        fail_image(file, "its channels are integers, not light");
+      pixels.insert(channels[c], float_slice(image, window, c));
+    }
+    input.setFrameBuffer(pixels);
+    input.readPixels(window.min.y, window.max.y);
+    // A name is read to one place: of grey to the last.
+    if (channels[0] == channels[2])
+      for (std::size_t i = 0; i < image.pixels.size(); i += 3)
+        image.pixels[i] = image.pixels[i + 1] = image.pixels[i + 2];
+    metadata = metadata_of(header);
+  });
+  if (is_srgb(metadata.colorspace)) srgb_to_linear(image);
+  return image;
+}
+
+ImageMetadata read_exr_metadata(const std::filesystem::path& file) {
+  ImageMetadata metadata;
+  read_exr_file(file, [&](Imf::InputFile& input) { metadata = metadata_of(input.header()); });
+  return metadata;
+}
+
+void write_exr(const std::filesystem::path& file, const Image& image,
+               const ImageMetadata& metadata) {
+  // Zip takes 3 % off 32-bit floats of a rendered picture, for three times the work of all the
+  // rest.
+  Imf::Header header = exr_header(image.width, image.height, Imf::NO_COMPRESSION);
+  header.insert(request_attribute, Imf::StringAttribute(metadata.request));
+  header.insert(colorspace_attribute, Imf::StringAttribute(metadata.colorspace));
+  if (const auto primaries = chromaticities(metadata.colorspace))
+    Imf::addChromaticities(header, *primaries);
+  Imf::FrameBuffer pixels;
+  for (int c = 0; c < 3; ++c) {
+    const std::string name(1, "RGB"[c]);
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    pixels.insert(name, float_slice(image, header.dataWindow(), c));
+  }
+  write_exr_file(file, header, [&](Imf::OutputFile& output) {
+    output.setFrameBuffer(pixels);
+    output.writePixels(image.height);
+  });
+}
+
+}  // namespace translucube

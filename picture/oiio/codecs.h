@@ -1,0 +1,27 @@
+#pragma once
+
+// OpenImageIO pulls in 260 shared libraries, a fifth to a third of a second of dynamic linking. So
+// it is linked to a module of its own (renderer/oiio), which is loaded when a file first needs it:
+// a picture that is not EXR.
+
+#include <filesystem>
+
+#include "picture/image_io.h"
+
+namespace translucube {
+
+/// What the module can do; as in image_io.h, but for the check of the pixels.
+struct ImageCodecs {
+  Image (*read)(const std::filesystem::path& file);
+  ImageMetadata (*read_metadata)(const std::filesystem::path& file);
+  void (*write)(const std::filesystem::path& file, const Image& image, ImageFormat format,
+                const ImageMetadata& metadata);
+};
+
+/// The name under which the module exports its `const ImageCodecs`.
+inline constexpr const char* image_codecs_symbol = "translucube_image_codecs";
+
+/// Loads the module at the first call. Throws ImageError.
+const ImageCodecs& image_codecs();
+
+}  // namespace translucube

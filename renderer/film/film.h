@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "picture/image.h"
+
+namespace translucube {
+
+/// What happened on the way; sums over all paths of a pass or a render.
+struct TraceCounters {
+  std::uint64_t camera_samples = 0;
+  std::uint64_t flights = 0;          ///< free flights and large steps inside the body
+  std::uint64_t boundary_events = 0;  ///< Fresnel or microfacet events
+  std::uint64_t connections = 0;      ///< next-event estimations
+  std::uint64_t nan_samples = 0;      ///< non-finite contributions: a bug, fails the render
+  double truncated_energy = 0;  ///< throughput given up at the path cap, per camera sample sum
+
+  TraceCounters& operator+=(const TraceCounters& other);
+};
+
+/// A pass: `count` camera samples for each pixel, an independent replicate of the sampling.
+struct Pass {
+  std::uint32_t index = 0;
+  std::uint32_t first_sample = 0, count = 0;
+  friend bool operator==(const Pass&, const Pass&) = default;
+};
+
+/// The picture of one pass: sums over its samples.
+struct PassFilm {
+  int width = 0, height = 0, lanes = 1;
+  bool shares = false;  ///< the lanes add up to one picture (explorable), else each is one
+  Pass pass;
+  std::vector<float> sum;  ///< lanes x height x width x 3
+  TraceCounters counters;
+  double cpu_seconds = 0;
+};
+
+/// Merged passes, with the spread between them. Merge in the order of their indices: float sums
+/// depend on it, and the same request must give the same bits.
+struct Film {
+  int width = 0, height = 0, lanes = 1;
+  bool shares = false;  ///< the lanes add up to one picture (explorable), else each is one
+  std::uint32_t passes = 0, samples = 0;
+  std::vector<float> sum;  ///< lanes x height x width x 3, over all samples
+  std::vector<float> m2;   ///< height x width x 3: sum over passes of n (mean_pass - mean)^2
+  TraceCounters counters;
+  double cpu_seconds = 0;
+
+  Film() = default;
+  Film(int width, int height, int lanes, bool shares = false);
+};
+
+/// Adds the next pass (pass.index == film.passes) (Chan et al. 1979, the pairwise update).
+void merge(Film& film, const PassFilm& pass);
+
+/// The picture that errors refer to: the mean of lane 0, or of the sum of all lanes where they are
+/// shares of it (an explorable film without absorption).
+Image develop(const Film& film);
+/// The mean of a lane.
+Image develop(const Film& film, int lane);
+
+/// Estimate of Var(pixel mean), height x width x 3, from the independent passes. Needs two passes.
+Image variance(const Film& film);
+
+/// Estimate of sqrt(relMSE), relMSE = mean (x - ref)^2 / (ref^2 + 0.01) over channels and pixels,
+/// the 0.1 % largest pixels set aside. NaN before the second pass; ref is told from the picture and
+/// its surroundings.
+double relative_error(const Film& film);
+
+/// Binary form for checkpoints: header, counters, floats, checksum; same machine only.
+/// The parsers throw std::runtime_error for anything short, foreign or corrupt.
+std::string to_bytes(const PassFilm& film);
+std::string to_bytes(const Film& film);
+PassFilm pass_film_from_bytes(std::string_view bytes);
+Film film_from_bytes(std::string_view bytes);
+
+}  // namespace translucube

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <list>
+#include <memory>
+#include <mutex>
+
+#include "renderer/light/environment.h"
+
+namespace translucube {
+
+/// Image environments ready to look up, for a process that builds many scenes: reading one and
+/// building its tables takes longer than tracing a first pass. Used by threads at once.
+class EnvironmentCache {
+ public:
+  /// The environment of an image file, from memory if the file, as its size and time of change tell
+  /// it, was asked for not long ago with the same rotation, scale and side. Throws ImageError.
+  std::shared_ptr<const ImageEnvironment> get(const std::filesystem::path& file,
+                                              double rotation_rad, double scale,
+                                              EnvironmentSide side = EnvironmentSide::all);
+
+ private:
+  /// Of images that are kept, in pixels (24 bytes each), the last one apart.
+  static constexpr std::uint64_t most_pixels = std::uint64_t{1} << 23;
+
+  struct Key {
+    std::filesystem::path file;
+    std::uintmax_t bytes;
+    std::filesystem::file_time_type changed;
+    double rotation_rad, scale;
+    EnvironmentSide side;
+    friend bool operator==(const Key&, const Key&) = default;
+  };
+  struct Entry {
+    Key key;
+    std::uint64_t pixels;
+    std::shared_ptr<const ImageEnvironment> environment;
+  };
+
+  std::shared_ptr<const ImageEnvironment> find(const Key& key);
+  void keep(Entry entry);
+
+  std::mutex mutex_;
+  std::list<Entry> entries_;  ///< the latest first
+};
+
+}  // namespace translucube

@@ -1,0 +1,27 @@
+#include "renderer/light/light_list.h"
+
+#include "renderer/base/sampler.h"
+
+namespace translucube {
+
+LightList::LightList(const Environment& environment, std::uint64_t key) {
+  const auto* image = std::get_if<ImageEnvironment>(&environment);
+  if (image == nullptr) return;
+  Rng rng(key);
+  for (auto* floats : {&x, &y, &z, &pdf}) floats->resize(size);
+  radiance.resize(size);
+  std::vector<Sample2> numbers;
+  numbers.reserve(size);
+  for (std::uint32_t i = 0; i < size; ++i)
+    numbers.push_back({(i + rng.uniform()) / size, rng.uniform()});
+  const std::vector<EnvironmentSample> lights = image->sample(numbers);
+  for (std::uint32_t i = 0; i < size; ++i) {
+    x[i] = static_cast<float>(lights[i].direction.x);
+    y[i] = static_cast<float>(lights[i].direction.y);
+    z[i] = static_cast<float>(lights[i].direction.z);
+    pdf[i] = static_cast<float>(lights[i].value.pdf);
+    radiance[i] = lights[i].value.radiance;
+  }
+}
+
+}  // namespace translucube

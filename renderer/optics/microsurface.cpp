@@ -1,0 +1,118 @@
+#include "renderer/optics/microsurface.h"
+
+#include <cmath>
+
+namespace translucube {
+namespace {
+
+/// Collisions per depth of a ray along d.
+double collision_rate(const Ggx& ggx, Vec3 d) {
+  return ggx.projected_area(-d) / std::fmax(std::fabs(d.z), 1e-12);
+}
+
+/// The depth of the same point seen from the other side.
+double depth_beyond(double depth) {
+  return depth < 0.7 ? -std::log(-std::expm1(-std::fmax(depth, 1e-300)))
+                     : -std::log1p(-std::exp(-depth));
+}
+
+/// |d m / d wi| of refraction (Walter 2007, eq. 17), for basic radiance.
+double refraction_jacobian(double wo_m, double wi_m, double eta) {
+  const double denominator = wo_m + eta * wi_m;
+  return eta * eta * std::fabs(wi_m) / (denominator * denominator);
+}
+
+Vec3 mirrored(Vec3 w) { return {w.x, w.y, -w.z}; }
+
+}  // namespace
+
+MicroVertex::MicroVertex(const Ggx& ggx, double eta, Vec3 wo, double u)
+    : ggx_(ggx), eta_(eta), w_(wo), depth_(-std::log(u) / collision_rate(ggx, -wo)) {}
+
+double MicroVertex::escape(Vec3 d, double depth) const {
+  return d.z > 0 ? std::exp(-collision_rate(ggx_, d) * depth) : 0;
+}
+
+MicroSample MicroVertex::sample(Sample2 u) const {
+  MicroSample s;
+  const Vec3 m = ggx_.sample_visible(w_, u);
+  const double w_m = dot(w_, m);
+  if (w_m <= 0) {  // rounding at grazing incidence: pass as if reflected
+    s.reflected = {w_, 1, 0, 0};
+    return s;
+  }
+  const double density = ggx_.visible_d(w_, m);
+  const double f = fresnel(w_m, eta_);
+  const Vec3 up = reflect(w_, m);
+  s.reflected = {up, f, escape(up, depth_), density / (4 * w_m)};
+  if (const auto down = refract(w_, m, eta_))
+    s.transmitted = {*down, 1 - f, escape(mirrored(*down), depth_beyond(depth_)),
+                     density * refraction_jacobian(w_m, dot(*down, m), eta_)};
+  return s;
+}
+
+LobeValue MicroVertex::evaluate(Vec3 wi_first) const {
+  const Vec3 wi = to_first_side(wi_first);  // the mirror is its own inverse
+  if (wi.z > 0) {
+    const Vec3 sum = w_ + wi;
+    if (sum.z <= 0) return {};
+    const Vec3 m = normalize(sum);
+    const double w_m = dot(w_, m);
+    if (w_m <= 0) return {};
+    const double pdf = ggx_.visible_d(w_, m) / (4 * w_m);
+    return {fresnel(w_m, eta_) * escape(wi, depth_) * pdf, pdf};
+  }
+  // Walter 2007, eq. 16: m along w + eta wi, turned to this side.
+  Vec3 m = w_ + eta_ * wi;
+  const double norm = length(m);
+  if (norm == 0) return {};
+  m = m * ((m.z < 0 ? -1 : 1) / norm);
+  const double w_m = dot(w_, m), wi_m = dot(wi, m);
+  if (w_m <= 0 || wi_m >= 0) return {};
+  const double pdf = ggx_.visible_d(w_, m) * refraction_jacobian(w_m, wi_m, eta_);
+  return {(1 - fresnel(w_m, eta_)) * escape(mirrored(wi), depth_beyond(depth_)) * pdf, pdf};
+}
+
+void MicroVertex::advance(const MicroSample& s, double u, double v) {
+  const double reflected = s.reflected.weight * (1 - s.reflected.escape);
+  const double transmitted = s.transmitted.weight * (1 - s.transmitted.escape);
+  const double kept = reflected + transmitted;
+  weight_ *= kept;
+  if (u * kept <= reflected) {
+    collide(s.reflected.wi, depth_, v);
+  } else {
+    crossed_ = !crossed_;
+    eta_ = 1 / eta_;
+    collide(mirrored(s.transmitted.wi), depth_beyond(depth_), v);
+  }
+}
+
+void MicroVertex::collide(Vec3 d, double depth, double u) {
+  const double rate = collision_rate(ggx_, d);
+  if (d.z > 0) {
+    // Given that it does not escape: the exponential cut off at the surface's top.
+    const double caught = -std::expm1(-rate * depth);
+    depth_ = std::fmax(0.0, depth + std::log1p(-u * caught) / rate);
+  } else {
+    depth_ = depth - std::log(u) / rate;
+  }
+  w_ = -d;
+}
+
+DirectionalAlbedo directional_albedo(const RoughInterface& interface, double eta, double cos_o) {
+  constexpr std::uint32_t n = 4096;
+  const Vec3 wo{std::sqrt(std::fmax(0.0, 1 - cos_o * cos_o)), 0, cos_o};
+  DirectionalAlbedo albedo;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    PathSampler sampler(0x5eed, i);
+    cross_microsurface(
+        interface, eta, wo, sampler, [](const MicroVertex&) {},
+        [&](Vec3 wi, double weight, double) {
+          (wi.z > 0 ? albedo.reflected : albedo.transmitted) += weight;
+        },
+        1e-4);  // a table's noise would stay in every picture made with it
+  }
+  return {albedo.reflected / n, albedo.transmitted / n};
+}
+
+}  // namespace translucube

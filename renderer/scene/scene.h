@@ -1,0 +1,60 @@
+#pragma once
+
+// What the transport reads: the scene with its resources loaded and everything that can be decided
+// once decided. Lengths are in the body's unit.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "renderer/film/absorption.h"
+#include "renderer/film/explorable.h"
+#include "renderer/light/backdrop.h"
+#include "renderer/light/environment.h"
+#include "renderer/optics/interface.h"
+#include "renderer/optics/interior.h"
+#include "renderer/scene/camera.h"
+#include "renderer/scene/spec.h"
+#include "renderer/shape/bowl.h"
+#include "renderer/shape/mesh.h"
+#include "renderer/shape/polytope.h"
+#include "renderer/shape/slab.h"
+#include "renderer/shape/sphere.h"
+
+namespace translucube {
+
+/// Where a film smooths the rough interface, in the body's coordinates.
+struct OiledPart {
+  Vec3 normal;
+  double offset = 0;
+  bool covers(Vec3 p) const { return dot(p, normal) >= offset; }
+};
+
+using AnyShape = std::variant<Sphere, Slab, Mesh, Polytope, Bowl>;
+
+struct Scene {
+  int width = 0, height = 0;
+  std::uint64_t seed = 0;
+  double unit_mm = 1;  ///< the body's unit of length
+  AnyShape shape;
+  AnyInterface interface;
+  std::optional<OiledPart> oiled;  ///< of a rough interface
+  AnyInterior interior;
+  Environment environment;
+  std::optional<Backdrop> backdrop;  ///< with it, the environment shows its front half only
+  Camera camera;
+  bool camera_inside = false;
+  std::vector<Lane> lanes;          ///< of the film, unless it is explorable; [0] is the material's
+  std::optional<BinSpread> spread;  ///< explorable: the film's lanes are bins of length
+  /// Whether light is looked for at rough exits and through smooth boundaries; without, the same
+  /// mean comes of the paths alone, with more noise.
+  bool next_event_estimation = true;
+
+  int film_lanes() const {
+    return spread ? spread->bins().count() : static_cast<int>(lanes.size());
+  }
+};
+
+}  // namespace translucube

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+#include "renderer/base/vec.h"
+#include "renderer/light/backdrop.h"
+#include "renderer/optics/material.h"
+
+namespace translucube {
+
+struct SphereObject {
+  double radius_mm = 20;  ///< centred at the origin
+  friend bool operator==(const SphereObject&, const SphereObject&) = default;
+};
+struct MeshObject {
+  std::filesystem::path file;  ///< OBJ or PLY, in millimetres, closed
+  friend bool operator==(const MeshObject&, const MeshObject&) = default;
+};
+/// The bounding boxes of these are centred at the origin.
+struct PlateObject {
+  double width_mm = 40, height_mm = 40, thickness_mm = 4;  ///< along x, y, z
+  friend bool operator==(const PlateObject&, const PlateObject&) = default;
+};
+struct BoxObject {
+  double width_mm = 28, height_mm = 28, depth_mm = 28;  ///< along x, y, z
+  friend bool operator==(const BoxObject&, const BoxObject&) = default;
+};
+/// A plate with a flat back whose thickness rises from left (-x) to right.
+struct WedgeObject {
+  double width_mm = 40, height_mm = 40, thin_mm = 0, thick_mm = 10;
+  friend bool operator==(const WedgeObject&, const WedgeObject&) = default;
+};
+/// Half of a spherical shell, open upwards (+y).
+struct BowlObject {
+  double radius_mm = 20, thickness_mm = 3;  ///< outer radius, of the wall
+  friend bool operator==(const BowlObject&, const BowlObject&) = default;
+};
+using ObjectSpec =
+    std::variant<SphereObject, MeshObject, PlateObject, BoxObject, WedgeObject, BowlObject>;
+
+struct ImageEnvironmentSpec {
+  std::filesystem::path file;  ///< lat-long, linear RGB
+};
+struct ConstantEnvironmentSpec {
+  Rgb radiance{1, 1, 1};
+};
+struct EnvironmentSpec {
+  std::variant<ConstantEnvironmentSpec, ImageEnvironmentSpec> source;
+  double rotation_deg = 0;  ///< about +y, positive from +z towards +x
+  double scale = 1;         ///< multiplies the radiance, >= 0
+};
+
+struct CameraSpec {
+  Vec3 position_mm{0, 0, 90}, target_mm{0, 0, 0}, up{0, 1, 0};
+  double vfov_deg = 32;  ///< vertical field of view, (0, 180)
+};
+
+/// Keeps the path lengths, so that any absorber can be developed later (explorable.h).
+struct Explorable {
+  double densest_sigma_a = 0;  ///< what it will be developed for at most [1/mm]
+};
+
+/// Which light transport renders the body: the exact one, or the paper's approximation (dipole.h).
+struct ExactTransport {};
+struct DipoleModel {
+  double opacity = 0;  ///< w: the material's scattering coordinate in the cube, [0, 1]
+};
+using LightModel = std::variant<ExactTransport, DipoleModel>;
+
+/// All that the picture depends on, as plain values.
+struct SceneSpec {
+  Material material;
+  LightModel model;
+  /// Other absorptions of the same body, traced with it: a lane of the film for each, behind the
+  /// material's own. Where one of them is finite, none changes what is traced.
+  std::vector<Absorption> more_absorptions;
+  std::optional<Explorable> explorable;
+  ObjectSpec object;
+  EnvironmentSpec environment;
+  std::optional<BackdropSpec> backdrop;
+  CameraSpec camera;
+  int width = 512, height = 512;
+  std::uint64_t seed = 1;
+};
+
+/// A resource of the scene that cannot be used: unreadable image, open or empty mesh.
+struct SceneError : std::runtime_error {
+  enum class Part { object, environment, camera };
+  Part part;
+  SceneError(Part p, const std::string& what) : std::runtime_error(what), part(p) {}
+};
+
+/// A scene ready to trace (scene.h): immutable, shared by threads.
+struct Scene;
+class EnvironmentCache;
+/// Reads the resources, the environment by way of the cache if there is one. Throws SceneError.
+std::shared_ptr<const Scene> build_scene(const SceneSpec& spec,
+                                         EnvironmentCache* environments = nullptr);
+
+/// Throws SceneError with the reason if the mesh cannot be read, is empty, not finite, or not
+/// closed (every edge shared by two triangles of opposite orientation). Outward orientation is
+/// made, not asked for.
+void check_mesh(const std::filesystem::path& file);
+
+}  // namespace translucube

@@ -1,0 +1,331 @@
+#include "renderer/slab/walk.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <type_traits>
+
+#include "renderer/optics/ball_tables.h"
+#include "renderer/optics/microsurface.h"
+
+namespace translucube {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Weight, relative to the start, down to which light is split at a face or a microfacet; from
+/// there on it goes one way as a whole, by chance. Unlike Russian roulette this keeps the energy of
+/// every history: the error of R is no larger than that of T and of what is absorbed.
+constexpr double least_split = 1.0 / 2, least_split_of_microfacets = 1.0 / 2;
+
+/// Deeper than this below both faces, in transport mean free paths, light crosses many of them in
+/// one step, and comes no nearer to a face than `jump_margin` on its way.
+constexpr double jump_depth = 16, jump_margin = 4;
+/// Milne's problem: light leaves a thick medium as from `milne_length` transport mean free paths
+/// behind its face, which is the mean cosine of its flux; the density mu (milne_slope + mu) has
+/// that mean and follows Chandrasekhar's H (1960, section 16) within a few percent.
+constexpr double milne_slope = 0.6036;
+
+const double core_sin2 = sin2_of_degrees(core_half_angle_deg);
+const double ring_sin2 = sin2_of_degrees(ring_half_angle_deg);
+
+/// Time at which a Brownian motion of variance 2 t first leaves [-1, 1] from its centre. Its
+/// Laplace transform 1 / cosh(sqrt s) is a product over exponential times of means
+/// 4 / (pi (2k + 1))^2 (Biane, Pitman, Yor 2001, "Probability laws related to the Jacobi theta and
+/// Riemann zeta functions", table 1); those past the sixth add their mean.
+double sample_exit_time(Rng& rng) {
+  double time = 0, left = 0.5;
+  for (int k = 0; k < 6; ++k) {
+    const double root = 2 / (std::numbers::pi * (2 * k + 1)), mean = root * root;
+    time -= mean * std::log(rng.uniform_positive());
+    left -= mean;
+  }
+  return time + left;
+}
+
+template <class Interface, class Interior>
+class Walk {
+  static constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
+  static constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
+  static constexpr bool open = scattering || std::is_same_v<Interior, ClearInterior>;
+
+ public:
+  Walk(const SlabBody& body, const Interface& interface, const Interior& interior,
+       Incidence incidence, bool jumps, SlabTally& tally)
+      : interface_(interface), interior_(interior), incidence_(incidence), tally_(tally) {
+    half_length_ = std::numbers::ln2 / body.least_sigma_a;
+    const double sin_critical2 = 1 / (interface.ior * interface.ior);
+    trapped_mu2_ = 1 - sin_critical2;
+    if constexpr (scattering) {
+      const Medium& medium = interior.medium;
+      transport_length_ = 1 / (medium.sigma_s * (1 - medium.g));
+      if (jumps) jump_depth_ = jump_depth * transport_length_;
+    }
+  }
+
+  void run(const PathSampler& sampler) {
+    sampler_ = sampler;
+    length_ = 0;
+    next_roulette_ = half_length_;
+    const Sample2 u = sampler_.next2();
+    const double mu = incidence_ == Incidence::normal ? 1 : std::sqrt(1 - u.u);
+    if constexpr (smooth) {
+      if (!scatter_first(mu, u.v)) return;
+    } else {
+      z_ = 0;
+      weight_ = 1;
+      if (!cross_rough(mu, interface_.ior, true, 1 - u.v)) return;
+    }
+    if constexpr (open) {
+      floor_ = weight_ * least_split;
+      walk();
+    }
+  }
+
+ private:
+  // ---- inside
+
+  /// To the first scatterer that light meets behind a smooth face, whichever of the faces it met
+  /// before: a geometric series of crossings.
+  bool scatter_first(double mu_outside, double u) {
+    const double sigma_s = interior_.medium.sigma_s;
+    const double ior = interface_.ior;
+    const double mu = std::sqrt(1 - (1 - mu_outside * mu_outside) / (ior * ior));
+    const double reflectance = fresnel(mu_outside, ior);
+    const double scattered = -std::expm1(-sigma_s / mu);
+    const double again = reflectance * (1 - scattered);
+    weight_ = (1 - reflectance) * scattered / (1 - again);
+    if (!(weight_ > 0)) return false;
+    // One number tells the crossing and, stretched, the place on it.
+    u = std::fmax(u, 0x1p-33);
+    double crossings = 0;
+    if (u < again) {
+      crossings = std::floor(std::log(u) / std::log(again));
+      u = std::fmin(1.0, u / std::pow(again, crossings));
+    }
+    u = std::fmin(1.0, std::fmax(0.0, (u - again) / (1 - again)));
+    const double path = std::fmin(1 / mu, -std::log1p(-u * scattered) / sigma_s);
+    const bool forwards = std::fmod(crossings, 2) == 0;
+    z_ = forwards ? path * mu : 1 - path * mu;
+    mu_ = forwards ? mu : -mu;
+    length_ = crossings / mu + path;
+    const Sample2 turn = sampler_.next2();
+    scatter(turn.u, std::cos(2 * std::numbers::pi * turn.v));
+    return true;
+  }
+
+  void walk() {
+    Rng& rng = sampler_.rng();
+    while (true) {
+      const double to_face = mu_ == 0 ? infinity : std::fmax(0.0, (mu_ > 0 ? 1 - z_ : -z_) / mu_);
+      if constexpr (scattering) {
+        const double flight = interior_.medium.sample_flight(rng);
+        // Light that no smooth face lets out goes from face to face up to its next scatterer.
+        const bool trapped = smooth && mu_ * mu_ < trapped_mu2_;
+        if (flight < to_face || trapped) {
+          length_ += flight;
+          z_ += flight * mu_;
+          if (!(flight < to_face)) fold();
+          if (length_ > next_roulette_ && !outlives_absorption()) return;
+          if (std::fmin(z_, 1 - z_) > jump_depth_)
+            jump();
+          else
+            scatter(rng.uniform(), interior_.medium.g == 0 ? 0 : sample_cos_phi(rng));
+          continue;
+        }
+      }
+      length_ += to_face;
+      z_ = mu_ > 0 ? 1 : 0;
+      if (length_ > next_roulette_ && !outlives_absorption()) return;
+      if constexpr (smooth) {
+        if (!stays_smooth()) return;
+      } else if (!cross_rough(std::fabs(mu_), 1 / interface_.ior, false, rng.uniform_positive())) {
+        return;
+      }
+    }
+  }
+
+  void scatter(double u, double cos_phi) {
+    const double g = interior_.medium.g;
+    if (g == 0) {
+      mu_ = 2 * u - 1;
+      return;
+    }
+    const double cos_theta = sample_henyey_greenstein(g, u);
+    const double sines = (1 - cos_theta * cos_theta) * std::fmax(0.0, 1 - mu_ * mu_);
+    mu_ = mu_ * cos_theta + std::sqrt(std::fmax(0.0, sines)) * cos_phi;
+    mu_ = std::fmin(1.0, std::fmax(-1.0, mu_));
+  }
+
+  /// Of an azimuth, without a cosine: that of twice the angle of a point in the unit disc (von
+  /// Neumann 1951).
+  static double sample_cos_phi(Rng& rng) {
+    while (true) {
+      const Sample2 u = rng.uniform2();
+      const double a = 2 * u.u - 1, b = 2 * u.v - 1, s = a * a + b * b;
+      if (s < 1 && s > 0) return (a * a - b * b) / s;
+    }
+  }
+
+  /// Mirrored at the faces, back into the slab.
+  void fold() {
+    const double whole = std::floor(z_);
+    z_ -= whole;
+    if (std::fmod(whole, 2) != 0) {
+      z_ = 1 - z_;
+      mu_ = -mu_;
+    }
+  }
+
+  /// Many mean free paths at once, from a scatterer to the border of a layer around it. Either
+  /// border is as likely, so that energy keeps exactly what a walk keeps; lengths are those of
+  /// diffusion to the borders' extrapolated places. z + mu l* is a walk's martingale: the layer's
+  /// centre lies g mu l* ahead of the scatterer.
+  void jump() {
+    Rng& rng = sampler_.rng();
+    const double l = transport_length_;
+    z_ += interior_.medium.g * mu_ * l;
+    const double half = std::fmin(z_, 1 - z_) - jump_margin * l;
+    const double extrapolated = half + milne_length * l;
+    length_ += 3 * extrapolated * extrapolated / l * sample_exit_time(rng);
+    constexpr double linear = milne_slope / 2 / (milne_slope / 2 + 1.0 / 3);
+    const Sample2 u = rng.uniform2();
+    const double cosine = u.u < linear ? std::sqrt(u.v) : std::cbrt(u.v);
+    const double side = rng.uniform() < 0.5 ? -1 : 1;
+    z_ += side * half;
+    mu_ = side * cosine;
+  }
+
+  // ---- faces
+
+  /// Sends out the transmitted share, keeps the reflected one; false if nothing is kept.
+  bool stays_smooth() {
+    const double reflectance = fresnel(std::fabs(mu_), 1 / interface_.ior);
+    const double sin2 = interface_.ior * interface_.ior * (1 - mu_ * mu_);
+    mu_ = -mu_;
+    if (weight_ >= floor_) {
+      leave(weight_ * (1 - reflectance), sin2);
+      weight_ *= reflectance;
+      return weight_ > 0;
+    }
+    if (sampler_.rng().uniform() < reflectance) return true;
+    leave(weight_, sin2);
+    return false;
+  }
+
+  /// From microfacet to microfacet: what escapes outwards is sent out, and one of the rays that
+  /// escape into the slab stands for all of them (a reservoir of one: Chao 1982); false if there is
+  /// none.
+  bool cross_rough(double mu, double eta, bool from_outside, double u) {
+    if (!(mu > 0)) return false;  // along the face: no light crosses it
+    const double arriving = weight_;
+    const bool splits = from_outside || arriving >= floor_;
+    Rng& rng = sampler_.rng();
+    double inward = 0, inward_weight = 0;
+    const auto escape = [&](Vec3 wi, double weight) {
+      if (!(weight > 0)) return;
+      if ((wi.z > 0) == from_outside) {
+        leave(weight, wi.x * wi.x + wi.y * wi.y);
+      } else if (open) {
+        inward_weight += weight;
+        if (rng.uniform() * inward_weight < weight) inward = std::fabs(wi.z);
+      }
+    };
+    const Vec3 wo{std::sqrt(std::fmax(0.0, 1 - mu * mu)), 0, mu};
+    MicroVertex vertex(interface_.microfacets, eta, wo, u);
+    while (true) {
+      const MicroSample sample = vertex.sample(sampler_.next2());
+      const MicroBranch &up = sample.reflected, &down = sample.transmitted;
+      const double weight = vertex.weight();
+      const double out_up = up.weight * up.escape, out_down = down.weight * down.escape;
+      if (splits && weight >= least_split_of_microfacets) {
+        escape(vertex.to_first_side(up.wi), arriving * weight * out_up);
+        escape(vertex.to_first_side(down.wi), arriving * weight * out_down);
+        if (!interface_.multiple_scattering) break;
+        vertex.advance(sample, rng.uniform_positive(), rng.uniform_positive());
+        continue;
+      }
+      const double choice = rng.uniform();
+      if (choice < out_up + out_down) {
+        escape(vertex.to_first_side(choice < out_up ? up.wi : down.wi), arriving * weight);
+        break;
+      }
+      if (!interface_.multiple_scattering) break;
+      vertex.advance(sample, rng.uniform_positive(), rng.uniform_positive());
+      vertex.set_weight(weight);
+    }
+    weight_ = inward_weight;
+    mu_ = z_ > 0 ? -inward : inward;
+    return inward_weight > 0;
+  }
+
+  void leave(double weight, double sin2) {
+    SlabExit exit = SlabExit::wide;
+    if (z_ == 0)
+      exit = SlabExit::reflected;
+    else if (incidence_ == Incidence::normal && sin2 < ring_sin2)
+      exit = sin2 < core_sin2 ? SlabExit::core : SlabExit::ring;
+    tally_.add(exit, weight, length_);
+  }
+
+  /// Russian roulette: past every length that halves even the least absorbed channel, half of the
+  /// paths go on, with the weight of all.
+  bool outlives_absorption() {
+    while (length_ > next_roulette_) {
+      if (sampler_.rng().uniform() < 0.5) return false;
+      weight_ *= 2;
+      floor_ *= 2;
+      next_roulette_ += half_length_;
+    }
+    return true;
+  }
+
+  const Interface& interface_;
+  const Interior& interior_;
+  Incidence incidence_;
+  SlabTally& tally_;
+  double half_length_, trapped_mu2_, transport_length_ = 0, jump_depth_ = infinity;
+
+  PathSampler sampler_;
+  double z_ = 0, mu_ = 0, length_ = 0, weight_ = 0, floor_ = 0, next_roulette_ = 0;
+};
+
+void walk_slab(const SlabBody& body, Incidence incidence, std::uint64_t key, std::uint64_t first,
+               std::uint64_t count, bool jumps, SlabTally& tally) {
+  std::visit(
+      [&](const auto& interface, const auto& interior) {
+        using Interface = std::decay_t<decltype(interface)>;
+        using Interior = std::decay_t<decltype(interior)>;
+        constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
+        constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
+        constexpr bool empty =
+            std::is_same_v<Interior, ClearInterior> || std::is_same_v<Interior, BlackInterior>;
+        if constexpr (scattering || (!smooth && empty)) {
+          Walk walk(body, interface, interior, incidence, jumps, tally);
+          // The low-discrepancy points are 2^16 to a key.
+          for (std::uint64_t i = first; i < first + count; ++i)
+            walk.run(PathSampler(hash_combine(key, i >> 16), std::uint32_t(i & 0xffff)));
+        }
+      },
+      body.interface, body.interior);
+}
+
+}  // namespace
+
+bool needs_walks(const SlabBody& body) {
+  if (std::holds_alternative<ScatteringInterior>(body.interior)) return true;
+  return std::holds_alternative<RoughInterface>(body.interface) &&
+         !std::holds_alternative<LambertianInterior>(body.interior);
+}
+
+void walk_slab(const SlabBody& body, Incidence incidence, std::uint64_t key, std::uint64_t first,
+               std::uint64_t count, SlabTally& tally) {
+  walk_slab(body, incidence, key, first, count, true, tally);
+}
+
+void walk_slab_analog(const SlabBody& body, Incidence incidence, std::uint64_t key,
+                      std::uint64_t first, std::uint64_t count, SlabTally& tally) {
+  walk_slab(body, incidence, key, first, count, false, tally);
+}
+
+}  // namespace translucube

@@ -1,0 +1,174 @@
+#include "renderer/transport/sphere/smooth_connector.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace translucube {
+
+SphereConnector::SphereConnector(const Scene& scene, Collector& collector, std::uint64_t key)
+    : collector_(collector),
+      environment_(scene.next_event_estimation ? std::get_if<ImageEnvironment>(&scene.environment)
+                                               : nullptr),
+      medium_(std::get<ScatteringInterior>(scene.interior).medium),
+      ior_(std::get<SmoothInterface>(scene.interface).ior),
+      rng_(key) {
+  if (!active()) return;
+  std::vector<float> shares;
+  for (const Lane& lane : scene.lanes) shares.push_back(carried_share(lane));
+  collector_.set_carried_shares(std::move(shares));
+  std::vector<Sample2> numbers;
+  numbers.reserve(LightStrata::size);
+  for (std::size_t i = 0; i < LightStrata::size; ++i)
+    numbers.push_back(
+        {(static_cast<double>(i) + rng_.uniform()) / LightStrata::size, rng_.uniform()});
+  lights_ = environment_->sample(numbers);
+  for (std::size_t i = 0; i < LightStrata::size; ++i) strata_.set(i, lights_[i].direction);
+}
+
+float SphereConnector::carried_share(const Lane& lane) const {
+  const Rgb clear = std::visit(
+      [&](const auto& which) {
+        return which.apply({1, 1, 1}, 1 / medium_.sigma_s);
+      },
+      lane);
+  const float absorbed = std::clamp(1 - luminance(clear), 0.0f, 1.0f);  // in a mean free path
+  return 1 / (1 + 4 * std::sqrt(absorbed));
+}
+
+void SphereConnector::start(Path& path) {
+  if (!active()) return;
+  const double rho = length(path.p);
+  const Vec3 axis = rho > 0 ? path.p * (1 / rho) : Vec3{0, 0, 1};
+  path.walk = static_cast<std::uint32_t>(walks_.size());
+  walks_.push_back({axis, environment_->irradiance_by_order(axis)});
+  for (Rgb& order : walks_.back().expected) order = order * std::numbers::inv_pi_v<float>;
+}
+
+bool SphereConnector::reaches_far(const SphereExits& exits) const {
+  return medium_.sigma_s * exits.shortest_far() < longest_way;
+}
+
+void SphereConnector::connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths) {
+  collector_.counters().connections += vertices.size;
+  // The shortest of all ways out on the far branch begins at the radius 1 / ior.
+  const bool far = medium_.sigma_s * std::sqrt(1 - 1 / (ior_ * ior_)) < longest_way;
+  for (std::size_t i = 0; i < vertices.size; ++i) {
+    const Path& path = paths[vertices.slot[i]];
+    const auto weight = static_cast<float>(path.weight);
+    const float chance = vertices.chance[i];
+    const std::uint32_t drawn = vertices.bits[i] & std::uint32_t{LightStrata::size - 1};
+    const EnvironmentSample& light = lights_[drawn];
+    const Vec3 p{vertices.p_x[i], vertices.p_y[i], vertices.p_z[i]};
+    collector_.note("connect", p, {vertices.d_x[i], vertices.d_y[i], vertices.d_z[i]},
+                    path.length + vertices.length[i], path.weight);
+    ExitBatch& near = near_.batch;
+    if (near_alone()) {
+      const Vec3 axis = walks_[path.walk].axis;
+      near.axis_x[near.size] = static_cast<float>(axis.x);
+      near.axis_y[near.size] = static_cast<float>(axis.y);
+      near.axis_z[near.size] = static_cast<float>(axis.z);
+      near.choice[near.size] = vertices.u[i];
+      near.drawn[near.size] = vertices.v[i];
+      near.turn[near.size] = vertices.w[i];
+      push(near_, vertices, i, path, weight / chance, 0, {}, 1);
+    } else {
+      push(near_, vertices, i, path, weight, drawn, light.direction, chance * light.value.pdf);
+    }
+    if (near.size == ExitBatch::capacity) flush_near();
+    if (!far || !reaches_far(SphereExits(ior_, p, vertices.depth2[i]))) continue;
+    push(far_, vertices, i, path, weight, drawn, light.direction, chance * light.value.pdf);
+    if (far_.batch.size == ExitBatch::capacity) flush_far();
+  }
+}
+
+void SphereConnector::push(Queue& queue, const SphereWalk::Vertices& vertices, std::size_t i,
+                           const Path& path, float weight, std::uint32_t light, Vec3 direction,
+                           double pdf) {
+  queue.waiting[queue.batch.size] = {path.length + vertices.length[i], weight, path.pixel,
+                                     path.walk, light};
+  queue.batch.push({vertices.p_x[i], vertices.p_y[i], vertices.p_z[i]}, vertices.depth2[i],
+                   {vertices.d_x[i], vertices.d_y[i], vertices.d_z[i]}, direction, pdf);
+}
+
+double SphereConnector::pdf(const Path& path) const {
+  const Path::Vertex& from = path.vertex;
+  if (from.phase == 0) return 0;
+  const SphereExits exits(ior_, from.p, from.depth2);
+  const bool far = exits.is_far(path.d);
+  if (far && !reaches_far(exits)) return 0;
+  if (!far && near_alone()) return Path::found_by_connecting;
+  return from.phase * std::exp(-medium_.sigma_s * from.flight) * exits.jacobian(path.d) /
+         walk_medium().chance(from.depth2);
+}
+
+void SphereConnector::flush_near() {
+  if (near_alone())
+    collect_near(near_);
+  else
+    collect_balanced(near_, ExitBranch::near);
+  near_.batch.size = 0;
+}
+
+void SphereConnector::flush_far() {
+  find_minima(exit_medium(), far_.batch);
+  for (const ExitBranch branch : far_branches) collect_balanced(far_, branch);
+  far_.batch.size = 0;
+}
+
+void SphereConnector::collect_balanced(Queue& queue, ExitBranch branch) {
+  ExitBatch& batch = queue.batch;
+  find_exits(exit_medium(), branch, Division::balanced, batch);
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const Waiting& from = queue.waiting[i];
+    const EnvironmentSample& light = lights_[from.light];
+    double share = batch.share[i], distance = batch.distance[i];
+    Vec3 normal{batch.normal_x[i], batch.normal_y[i], batch.normal_z[i]};
+    if (share == 0) continue;
+    if (!(share > 0)) {  // not found, or not finite: sought in double precision
+      const auto exit = batch.exits(i, ior_).towards(light.direction, branch);
+      if (!exit) continue;
+      share = translucube::share(medium_, ior_, *exit, batch.in(i), batch.light_pdf[i],
+                                 Division::balanced);
+      distance = exit->distance;
+      normal = batch.vertex(i) + distance * exit->d;
+    }
+    const Rgb brought = light.value.radiance - expected(normal, from.walk) * far_share;
+    collector_.collect(from.pixel, from.length + distance, 0,
+                       brought * static_cast<float>(from.weight * share));
+  }
+}
+
+void SphereConnector::collect_near(Queue& queue) {
+  ExitBatch& batch = queue.batch;
+  choose_lights(exit_medium(), strata_, rng_.bits() & (LightStrata::positions - 1), batch);
+  find_exits(exit_medium(), ExitBranch::near, Division::connected, batch);
+  draw_exits(exit_medium(), batch);
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const Waiting& from = queue.waiting[i];
+    const Walk& walk = walks_[from.walk];
+    // What the walk carries of the light that leaves from here is taken away.
+    const auto up = static_cast<float>(batch.up_x[i] * walk.axis.x + batch.up_y[i] * walk.axis.y +
+                                       batch.up_z[i] * walk.axis.z);
+    const float out = batch.drawn_cosine[i];
+    const Rgb carried = walk.expected[0] + walk.expected[1] * (up * out) +
+                        walk.expected[2] * (legendre2(up) * legendre2(out));
+    collector_.collect_carried(from.pixel, from.length + batch.drawn_distance[i], 0,
+                               carried * (-from.weight * batch.drawn_share[i]));
+    const EnvironmentSample& light = lights_[batch.light[i]];
+    double share = batch.share[i], distance = batch.distance[i];
+    if (share == 0) continue;
+    if (!(share > 0)) {  // not found, or not finite: sought in double precision
+      const Vec3 w{batch.light_x[i], batch.light_y[i], batch.light_z[i]};
+      const auto exit = batch.exits(i, ior_).towards(w, ExitBranch::near);
+      if (!exit) continue;
+      share = translucube::share(medium_, ior_, *exit, batch.in(i), batch.light_pdf[i],
+                                 Division::connected);
+      distance = exit->distance;
+    }
+    collector_.collect(
+        from.pixel, from.length + distance, 0,
+        light.value.radiance * static_cast<float>(from.weight * share / light.value.pdf));
+  }
+}
+
+}  // namespace translucube

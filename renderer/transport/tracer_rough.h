@@ -1,0 +1,93 @@
+#pragma once
+
+// The rough boundary: from microfacet to microfacet, many paths at a time.
+
+#include "renderer/transport/tracer.h"
+
+namespace translucube {
+
+template <class Shape, class Interface, class Interior>
+void Tracer<Shape, Interface, Interior>::enter_rough(Path path) {
+  if constexpr (dipole) enter_dipole(path);
+  await_crossing(path, true);
+}
+
+template <class Shape, class Interface, class Interior>
+void Tracer<Shape, Interface, Interior>::leave_rough(const Path& path) {
+  await_crossing(path, false);
+}
+
+template <class Shape, class Interface, class Interior>
+void Tracer<Shape, Interface, Interior>::await_crossing(const Path& path, bool from_outside) {
+  crossing_.push_back(path);
+  PathSampler& sampler = crossing_.back().sampler;
+  microsurface_.push(from_outside ? path.n : -path.n, path.d, sampler.next2(), sampler.rng().bits(),
+                     connecting && !from_outside && path.vertex.phase > 0);
+  if (crossing_.size() == MicrosurfaceBatch::capacity) cross_rough(from_outside);
+}
+
+template <class Shape, class Interface, class Interior>
+void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
+  const double ior = interface_.ior;
+  const BatchInterface interface {
+    static_cast<float>(interface_.microfacets.alpha),
+        static_cast<float>(from_outside ? ior : 1 / ior), from_outside,
+        interface_.multiple_scattering
+  };
+  const std::uint32_t lights_each = lights_.empty() ? 0 : lights_of_a_collision;
+  std::array<Rgb, MicrosurfaceBatch::capacity> found{};
+  microsurface_.start(interface);
+  while (microsurface_.under_way() > 0) {
+    tile_.counters.connections += lights_each * microsurface_.under_way();
+    microsurface_.collide(interface, lights_, lights_each);
+    const MicrosurfaceBatch::Lit& lit = microsurface_.lit();
+    for (std::size_t i = 0; i < lit.size; ++i) {
+      const Vec3 direction{lights_.x[lit.light[i]], lights_.y[lit.light[i]],
+                           lights_.z[lit.light[i]]};
+      Hit hit;
+      if (!shape_.convex() && shape_.enter(crossing_[lit.slot[i]].p, direction, hit)) continue;
+      found[lit.slot[i]] += lights_.radiance[lit.light[i]] * lit.share[i];
+    }
+    send_out(lights_each);
+  }
+  for (std::size_t i = 0; i < crossing_.size(); ++i) {
+    Path& path = crossing_[i];
+    collector_.collect(path, found[i], path.weight);
+    if constexpr (open || lambertian) {
+      path.weight *= microsurface_.inward_weight(i);
+      if (path.weight <= 0) continue;
+      path.pdf = 0;
+      path.d = microsurface_.inward(i);
+      if (!from_outside) {
+        if (path.survives()) walking_.push_back(path);
+        continue;
+      }
+      if constexpr (dipole) path.weight *= interior_.clear_share;
+      if constexpr (lambertian) return_diffuse(path);
+      if constexpr (open) {
+        if (path.weight > 0) inward(path);
+      }
+    }
+  }
+  crossing_.clear();
+}
+
+template <class Shape, class Interface, class Interior>
+void Tracer<Shape, Interface, Interior>::send_out(std::uint32_t lights_each) {
+  const MicrosurfaceBatch::Sent& sent = microsurface_.sent();
+  const auto direction = [&](std::size_t i) { return Vec3{sent.x[i], sent.y[i], sent.z[i]}; };
+  const float* ways = nullptr;
+  if constexpr (connecting) {
+    for (std::size_t i = 0; i < sent.size; ++i)
+      if (sent.connected[i] > 0)
+        connector_.push_way(crossing_[sent.slot[i]], direction(i), sent.pdf[i]);
+    ways = connector_.weigh_ways().data();
+  }
+  for (std::size_t i = 0; i < sent.size; ++i) {
+    Path& path = crossing_[sent.slot[i]];
+    const double pdf = sent.connected[i] > 0 ? *ways++ : sent.pdf[i] / lights_each;
+    leave(path, direction(i), path.weight * sent.weight[i], lights_each > 0 ? pdf : 0);
+  }
+}
+
+}  // namespace translucube

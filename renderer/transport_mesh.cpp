@@ -1,8 +1,0 @@
-#include "renderer/tracer.h"
-
-namespace translucube {
-
-template void trace_body(const Mesh&, const Scene&, std::uint32_t, std::uint32_t, std::uint32_t,
-                         Tile&, std::string*);
-
-}  // namespace translucube

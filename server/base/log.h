@@ -1,0 +1,32 @@
+#pragma once
+
+// Log lines that machines can read: logfmt (key=value) or JSON, one event a line. Whatever a client
+// sends stays inside its value: no control character, no line break, no forged key.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "api/config/server_config.h"
+
+namespace translucube::server {
+
+using LogValue = std::variant<std::string_view, std::int64_t, double>;
+using LogFields = std::vector<std::pair<std::string_view, LogValue>>;
+
+/// ` key=value` for each field, or `,"key":value`. Text is cut at 512 bytes; bytes that are not
+/// visible ASCII become \xHH, or in JSON \u00HH. Keys are ours, and plain.
+std::string log_text(api::LogFormat format, const LogFields& fields);
+
+/// Logs to standard error from here on: time (UTC), level, then the fields, or for a plain message
+/// the field `message`.
+void set_up_log(api::LogFormat format);
+
+/// One line of these fields, at the level info, or warn where the service is at fault.
+enum class LogLevel { info, warn };
+void log_event(LogLevel level, const LogFields& fields);
+
+}  // namespace translucube::server

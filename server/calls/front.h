@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "server/base/metrics.h"
+#include "server/calls/access.h"
+#include "server/http/server.h"
+
+namespace translucube::server {
+
+/// What stands before the endpoints: access, /metrics, the log and the counts of every request.
+/// Outlives the server that has its handlers.
+class Front {
+ public:
+  using Respond = std::function<HttpResponse(const HttpRequest&)>;
+
+  Front(AccessPolicy policy, Metrics& metrics, Respond endpoints);
+
+  HttpHandlers handlers();
+
+ private:
+  std::optional<HttpResponse> admit(HttpRequest& request) const;
+  HttpResponse respond(const HttpRequest& request) const;
+  HttpResponse metrics_response(const HttpRequest& request) const;
+  void done(const RequestRecord& record) const;
+
+  const AccessPolicy policy_;
+  Metrics& metrics_;
+  const Respond endpoints_;
+};
+
+/// The pattern of a path in the OpenAPI document (/v1/renders/{id}/image), "other" if it is none:
+/// a client cannot make up values.
+std::string_view route_pattern(std::string_view path);
+
+}  // namespace translucube::server

@@ -1,0 +1,116 @@
+#include "server/calls/handlers.h"
+#include "server/http/negotiation.h"
+
+namespace translucube::server {
+namespace {
+
+using api::Problem;
+using api::ProblemCode;
+
+constexpr const char* what_there_is =
+    "An image can be had as image/png, image/x-exr, image/tiff or image/jpeg "
+    "(?format=png, exr, tiff, jpeg).";
+
+HttpResponse with_headers_of(const ImageFile& image, HttpResponse response) {
+  response.headers.insert(response.headers.end(), {{"ETag", image.etag},
+                                                   {"Vary", "Accept"},
+                                                   {"Accept-Ranges", "bytes"},
+                                                   {"Cache-Control", "no-cache"}});
+  return response;
+}
+
+HttpResponse body_response(const HttpRequest& request, const ImageFile& image) {
+  const std::uint64_t size = image.file->size();
+  // A range of another version of the picture would not fit to what the client has (If-Range).
+  const std::string_view if_range = request.header("if-range");
+  const bool same_version = if_range.empty() || if_range == image.etag;
+  const bool may_be_part = request.method == "GET" && same_version;
+  const auto range = requested_range(may_be_part ? request.header("range") : "", size);
+  const std::string of_size = '/' + std::to_string(size);
+
+  if (std::holds_alternative<UnsatisfiableRange>(range)) {
+    HttpResponse response = problem_response(
+        {api::ProblemCode::range_not_satisfiable, "The image ends before the range begins.", {}});
+    response.headers.emplace_back("Content-Range", "bytes *" + of_size);
+    return response;
+  }
+  if (const auto* part = std::get_if<ByteRange>(&range)) {
+    return {206,
+            {{"Content-Range", "bytes " + std::to_string(part->first) + '-' +
+                                   std::to_string(part->first + part->length - 1) + of_size}},
+            image.mime_type,
+            FileSlice{image.file, part->first, part->length}};
+  }
+  return {200, {}, image.mime_type, FileSlice{image.file, 0, size}};
+}
+
+/// The query of an image, with what the headers ask for.
+Result<ImageQuery> image_query(const HttpRequest& request) {
+  ImageQuery query;
+  std::optional<ImageFormat> format;
+  bool format_given = false;
+  for (const auto& [name, value] : request.query) {
+    if (name == "format") {
+      format_given = true;
+      // Names only: image_format also takes file extensions.
+      for (const ImageFormat known :
+           {ImageFormat::png, ImageFormat::exr, ImageFormat::tiff, ImageFormat::jpeg})
+        if (value == translucube::name(known)) format = known;
+    }
+    if (name == "display") query.display = value;
+    if (name == "view") query.view = value;
+    if (name == "colorspace") query.colorspace = value;
+    if (name == "partial") {
+      if (value != "true" && value != "false")
+        return Problem{ProblemCode::invalid_request,
+                       "A query parameter is not valid.",
+                       {{"?partial", "must be true or false"}}};
+      query.partial = value == "true";
+    }
+    if (name == "absorber") query.redevelopment.absorber = value;
+    if (name == "absorption") {
+      const std::optional<double> number = api::absorption_number(value);
+      if (!number)
+        return Problem{ProblemCode::invalid_request,
+                       "A query parameter is not valid.",
+                       {{"?absorption", "must be a number in [0, 1]"}}};
+      query.redevelopment.absorption = number;
+    }
+  }
+  if (!format_given) format = negotiate_image(request.header("accept"));
+  if (!format) return Problem{ProblemCode::not_acceptable, what_there_is, {}};
+  query.format = *format;
+  return query;
+}
+
+template <typename Find>
+HttpResponse image_response(const HttpRequest& request, Find&& find) {
+  const auto query = image_query(request);
+  if (const auto* problem = std::get_if<Problem>(&query)) return problem_response(*problem);
+  const auto result = find(std::get<ImageQuery>(query));
+  if (const auto* problem = std::get_if<Problem>(&result)) return problem_response(*problem);
+  const auto& image = std::get<ImageFile>(result);
+  if (etag_matches(request.header("if-none-match"), image.etag))
+    return with_headers_of(image, {304, {}, {}, {}});
+  return with_headers_of(image, body_response(request, image));
+}
+
+}  // namespace
+
+HttpResponse get_image(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
+  return image_response(
+      request, [&](const ImageQuery& query) { return endpoints.service.image(ids.id, query); });
+}
+
+HttpResponse get_point_image(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
+  return image_response(request, [&](const ImageQuery& query) {
+    return endpoints.service.point_image(ids.id, ids.point, query);
+  });
+}
+
+HttpResponse get_sheet(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
+  return image_response(
+      request, [&](const ImageQuery& query) { return endpoints.service.sheet(ids.id, query); });
+}
+
+}  // namespace translucube::server

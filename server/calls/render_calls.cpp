@@ -1,0 +1,66 @@
+#include <algorithm>
+
+#include "server/calls/handlers.h"
+#include "server/http/negotiation.h"
+
+namespace translucube::server {
+
+using api::Problem;
+using api::RenderStatus;
+
+namespace {
+
+bool has_ended(const RenderStatus& status) { return api::is_end(status.state); }
+
+}  // namespace
+
+HttpResponse post_render(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+  const auto key = submission_key(request);
+  if (const auto* problem = std::get_if<Problem>(&key)) return problem_response(*problem);
+  auto submitted =
+      endpoints.service.submit(request.body, std::get<std::optional<std::string>>(key));
+  if (const auto* problem = std::get_if<Problem>(&submitted)) return problem_response(*problem);
+  auto& [status, created] = std::get<Submission>(submitted);
+
+  std::string applied;
+  if (const std::optional<int> asked = preferred_wait(request.header("prefer"))) {
+    const int seconds = std::min(*asked, longest_wait_s);
+    bool waited = false;
+    auto result = answer_after(
+        endpoints, seconds, waited, [&] { return endpoints.service.get(status.id); }, has_ended);
+    if (const auto* problem = std::get_if<Problem>(&result)) return problem_response(*problem);
+    status = std::get<RenderStatus>(std::move(result));
+    if (waited || seconds == 0) applied = "wait=" + std::to_string(seconds);
+  }
+  HttpResponse response = json_response(has_ended(status) ? 200 : 202, to_json(status));
+  response.headers = {{"Location", "/v1/renders/" + status.id}};
+  if (!applied.empty()) response.headers.emplace_back("Preference-Applied", applied);
+  if (!created) response.headers.emplace_back("Idempotency-Replayed", "true");
+  return response;
+}
+
+HttpResponse list_renders(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+  const auto query = list_query(request);
+  if (const auto* problem = std::get_if<Problem>(&query)) return problem_response(*problem);
+  const auto page = endpoints.service.list(std::get<ListQuery>(query));
+  if (const auto* problem = std::get_if<Problem>(&page)) return problem_response(*problem);
+  const auto& [renders, next_cursor] = std::get<RenderPage>(page);
+  return tagged_json(request, api::render_list_json(renders, next_cursor));
+}
+
+HttpResponse get_render(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
+  return status_response(endpoints, request, [&] { return endpoints.service.tell(ids.id); });
+}
+
+HttpResponse cancel_render(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {
+  const auto status = endpoints.service.cancel(ids.id);
+  if (const auto* problem = std::get_if<Problem>(&status)) return problem_response(*problem);
+  return json_response(200, to_json(std::get<RenderStatus>(status)));
+}
+
+HttpResponse delete_render(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {
+  if (const auto problem = endpoints.service.remove(ids.id)) return problem_response(*problem);
+  return {204, {}, {}, {}};
+}
+
+}  // namespace translucube::server

@@ -1,0 +1,168 @@
+#include "server/calls/router.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "api/answer/listings.h"
+#include "api/openapi.h"
+#include "server/base/ids.h"
+#include "server/calls/handlers.h"
+
+namespace translucube::server {
+namespace {
+
+using api::Problem;
+using api::ProblemCode;
+
+HttpResponse get_absorbers(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+  return tagged_json(request, api::absorbers_json(endpoints.catalog));
+}
+
+HttpResponse get_environments(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+  return tagged_json(request, api::environments_json(endpoints.catalog));
+}
+
+HttpResponse get_objects(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+  return tagged_json(request, api::objects_json(endpoints.catalog));
+}
+
+HttpResponse get_displays(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+  return tagged_json(request, api::displays_json(endpoints.colors.displays()));
+}
+
+HttpResponse get_openapi(Endpoints&, const HttpRequest& request, const PathIds&) {
+  return tagged_json(request, std::string(api::openapi_document()));
+}
+
+HttpResponse livez(Endpoints&, const HttpRequest&, const PathIds&) {
+  return json_response(200, R"({"status":"alive"})");
+}
+
+HttpResponse readyz(Endpoints& endpoints, const HttpRequest&, const PathIds&) {
+  if (const auto reason = endpoints.service.unready_reason())
+    return problem_response({ProblemCode::overloaded, *reason, {}});
+  return json_response(200, R"({"status":"ready"})");
+}
+
+using Parameters = std::array<std::string_view, 7>;
+
+struct Route {
+  std::string_view method, pattern;  ///< "{id}", "{point}" and "{file}" stand for a segment each
+  HttpResponse (*handle)(Endpoints&, const HttpRequest&, const PathIds&);
+  Parameters query{};  ///< those it knows
+};
+
+constexpr Parameters list_parameters{"cursor", "limit", "status"};
+constexpr Parameters image_parameters{"format",     "display",  "view",   "colorspace",
+                                      "absorption", "absorber", "partial"};
+constexpr Parameters point_parameters{"format",     "display",    "view",
+                                      "colorspace", "absorption", "absorber"};
+
+constexpr std::array routes{
+    Route{"POST", "/v1/renders", post_render},
+    Route{"GET", "/v1/renders", list_renders, list_parameters},
+    Route{"GET", "/v1/renders/{id}", get_render, {"wait"}},
+    Route{"DELETE", "/v1/renders/{id}", delete_render},
+    Route{"GET", "/v1/renders/{id}/image", get_image, image_parameters},
+    Route{"GET", "/v1/renders/{id}/events", get_render_events},
+    Route{"POST", "/v1/renders/{id}/cancel", cancel_render},
+    Route{"POST", "/v1/sweeps", post_sweep, {"dry_run"}},
+    Route{"GET", "/v1/sweeps", list_sweeps, list_parameters},
+    Route{"GET", "/v1/sweeps/{id}", get_sweep, {"wait"}},
+    Route{"DELETE", "/v1/sweeps/{id}", delete_sweep},
+    Route{"GET", "/v1/sweeps/{id}/points/{point}/image", get_point_image, point_parameters},
+    Route{"GET", "/v1/sweeps/{id}/sheet", get_sheet, {"format", "display", "view", "colorspace"}},
+    Route{"GET", "/v1/sweeps/{id}/events", get_sweep_events},
+    Route{"POST", "/v1/sweeps/{id}/cancel", cancel_sweep},
+    Route{"GET", "/v1/absorbers", get_absorbers},
+    Route{"GET", "/v1/environments", get_environments},
+    Route{"GET", "/v1/objects", get_objects},
+    Route{"GET", "/v1/displays", get_displays},
+    Route{"GET", "/", get_page},
+    Route{"GET", "/web/{file}", get_web_file},
+    Route{"GET", "/livez", livez},
+    Route{"GET", "/readyz", readyz},
+    Route{"GET", "/openapi.json", get_openapi},
+};
+
+/// The first segment of a path without its leading slash, which is taken off it.
+std::string_view take_segment(std::string_view& path) {
+  const std::string_view segment = path.substr(0, path.find('/'));
+  path.remove_prefix(std::min(path.size(), segment.size() + 1));
+  return segment;
+}
+
+/// What stands in the places of the pattern, or nothing if it is another path.
+std::optional<PathIds> match(std::string_view pattern, std::string_view path) {
+  PathIds ids;
+  if (std::ranges::count(pattern, '/') != std::ranges::count(path, '/')) return std::nullopt;
+  if (!path.starts_with('/')) return std::nullopt;
+  pattern.remove_prefix(1);
+  path.remove_prefix(1);
+  while (!pattern.empty() || !path.empty()) {
+    const std::string_view expected = take_segment(pattern), given = take_segment(path);
+    std::string* place = ids.place(expected);
+    if (place != nullptr && !given.empty())
+      *place = given;
+    else if (expected != given)
+      return std::nullopt;
+  }
+  return ids;
+}
+
+std::vector<api::Fault> query_faults(const Route& route, const HttpRequest& request) {
+  std::vector<api::Fault> faults;
+  for (auto it = request.query.begin(); it != request.query.end(); ++it) {
+    const std::string& name = it->first;
+    if (name.empty() || std::ranges::find(route.query, name) == route.query.end())
+      faults.push_back({"?" + name, "unknown query parameter"});
+    else if (std::any_of(request.query.begin(), it,
+                         [&](auto& other) { return other.first == name; }))
+      faults.push_back({"?" + name, "given more than once"});
+  }
+  return faults;
+}
+
+}  // namespace
+
+std::vector<Call> calls() {
+  std::vector<Call> all;
+  for (const Route& route : routes) {
+    Call& call = all.emplace_back(Call{route.method, route.pattern, {}});
+    std::ranges::copy_if(route.query, std::back_inserter(call.query),
+                         [](std::string_view name) { return !name.empty(); });
+  }
+  return all;
+}
+
+HttpResponse respond(Endpoints& endpoints, const HttpRequest& request) {
+  const std::string method = request.method == "HEAD" ? "GET" : request.method;
+  std::string allowed;
+  for (const Route& route : routes) {
+    const std::optional<PathIds> ids = match(route.pattern, request.path);
+    if (!ids) continue;
+    if (route.method != method) {
+      allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
+      if (route.method == "GET") allowed += ", HEAD";
+      continue;
+    }
+    const std::vector<api::Fault> faults = query_faults(route, request);
+    if (!faults.empty())
+      return problem_response(
+          {ProblemCode::invalid_request, "A query parameter is not valid.", faults});
+    if (!ids->id.empty() && !is_id(ids->id))
+      return problem_response({ProblemCode::not_found, "There is nothing of this id.", {}});
+    return route.handle(endpoints, request, *ids);
+  }
+  if (allowed.empty())
+    return problem_response({ProblemCode::not_found, "There is nothing at this path.", {}});
+  HttpResponse response =
+      method == "OPTIONS"
+          ? HttpResponse{204, {}, {}, {}}
+          : problem_response({ProblemCode::method_not_allowed, "Allowed here: " + allowed, {}});
+  response.headers.emplace_back("Allow", allowed);
+  return response;
+}
+
+}  // namespace translucube::server

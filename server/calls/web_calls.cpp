@@ -1,0 +1,63 @@
+// The web explorer: a page that talks to the calls beside it. It is open where the calls need a
+// token, since a browser cannot send one with a page; it asks for the token itself (access.cpp).
+
+#include <algorithm>
+#include <array>
+
+#include "server/base/ids.h"
+#include "server/calls/handlers.h"
+#include "server/calls/web_files.h"
+#include "server/http/negotiation.h"
+
+namespace translucube::server {
+namespace {
+
+/// Nothing inline and nothing from elsewhere; pictures are blobs, since an <img> cannot send a
+/// token.
+constexpr const char* content_security_policy =
+    "default-src 'self'; img-src 'self' blob:; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'";
+
+HttpResponse web_response(const HttpRequest& request, std::string_view name) {
+  const WebFile* file = find_web_file(name);
+  if (file == nullptr)
+    return problem_response({api::ProblemCode::not_found, "There is nothing at this path.", {}});
+  const std::string etag = '"' + content_hash(file->bytes) + '"';
+  HttpResponse response{200, {}, std::string(web_content_type(name)), std::string(file->bytes)};
+  if (etag_matches(request.header("if-none-match"), etag)) response = {304, {}, {}, {}};
+  response.headers = {{"ETag", etag},
+                      {"Cache-Control", "no-cache"},
+                      {"Content-Security-Policy", content_security_policy},
+                      {"X-Content-Type-Options", "nosniff"},
+                      {"Referrer-Policy", "no-referrer"}};
+  return response;
+}
+
+}  // namespace
+
+const WebFile* find_web_file(std::string_view name) {
+  const auto files = web_files();
+  const auto found = std::ranges::find(files, name, &WebFile::name);
+  return found == files.end() ? nullptr : &*found;
+}
+
+std::string_view web_content_type(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> types{
+      {{".html", "text/html; charset=utf-8"},
+       {".css", "text/css; charset=utf-8"},
+       {".js", "text/javascript; charset=utf-8"},
+       {".svg", "image/svg+xml"}}};
+  for (const auto& [extension, type] : types)
+    if (name.ends_with(extension)) return type;
+  return "application/octet-stream";
+}
+
+HttpResponse get_page(Endpoints&, const HttpRequest& request, const PathIds&) {
+  return web_response(request, "index.html");
+}
+
+HttpResponse get_web_file(Endpoints&, const HttpRequest& request, const PathIds& ids) {
+  return web_response(request, ids.file);
+}
+
+}  // namespace translucube::server

@@ -1,0 +1,24 @@
+#include "server/cli/input.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+namespace translucube::server {
+
+std::string read_input(const std::string& name, std::uint64_t limit) {
+  std::ifstream file;
+  if (name != "-") {
+    if (std::filesystem::is_directory(name)) throw InputError(name + ": is a folder");
+    file.open(name, std::ios::binary);
+    if (!file) throw InputError(name + ": cannot be read");
+  }
+  std::istream& in = name == "-" ? std::cin : file;
+  std::string text;
+  std::istreambuf_iterator<char> at(in), end;
+  for (; at != end && text.size() <= limit; ++at) text += *at;
+  return text;
+}
+
+}  // namespace translucube::server

@@ -1,0 +1,86 @@
+#include "server/cli/outputs.h"
+
+#include <iostream>
+#include <new>
+
+#include "renderer/scene/spec.h"
+#include "server/base/file.h"
+#include "server/cli/input.h"
+#include "server/cli/verbs.h"
+
+namespace translucube::server {
+
+namespace fs = std::filesystem;
+
+Refusal refusal_of(const api::Problem& problem) { return {exit_bad_request, to_text(problem)}; }
+
+int ended_command(const std::function<int()>& verb) {
+  try {
+    return verb();
+  } catch (const Refusal& refusal) {
+    std::cerr << refusal.message;
+    return refusal.status;
+  } catch (const InputError& error) {
+    std::cerr << error.what() << '\n';
+    return exit_bad_request;
+  } catch (const SceneError& error) {
+    std::cerr << error.what() << '\n';
+    return exit_bad_request;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "There is not enough memory for a render of this size.\n";
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+  }
+  return exit_failure;
+}
+
+void check_output_place(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder))
+    throw Refusal{exit_failure, folder.string() + ": there is no such folder\n"};
+  if (fs::exists(file) && !fs::is_regular_file(file))
+    throw Refusal{exit_failure, file.string() + ": is not an ordinary file\n"};
+}
+
+std::vector<Output> checked_outputs(const std::vector<fs::path>& files,
+                                    const std::optional<std::string>& display,
+                                    const std::optional<std::string>& view,
+                                    const ColorConfig& colors) {
+  std::vector<Output> outputs;
+  bool for_display = false;
+  for (const fs::path& file : files) {
+    const std::string extension = file.extension().string();
+    const auto format = image_format(extension.empty() ? "" : extension.substr(1));
+    if (!format)
+      throw Refusal{exit_bad_request, file.string() + ": must end in .exr, .png, .tiff or .jpeg\n"};
+    check_output_place(file);
+    ImageQuery query{*format, {}, {}, {}};
+    if (*format != ImageFormat::exr) {
+      prepare_image_codecs();
+      for_display = true;
+      query.display = display;
+      query.view = view;
+    }
+    const auto form = image_form(query, colors.displays());
+    if (const auto* problem = std::get_if<api::Problem>(&form)) {
+      std::string message;
+      for (const api::Fault& fault : problem->faults)
+        message += "--" + fault.pointer.substr(1) + ": " + fault.detail + '\n';
+      throw Refusal{exit_bad_request, message};
+    }
+    outputs.push_back({file, std::get<ImageForm>(form)});
+  }
+  if ((display || view) && !for_display)
+    throw Refusal{exit_bad_request, "--display and --view are for PNG, TIFF and JPEG outputs\n"};
+  return outputs;
+}
+
+void write_outputs(const std::vector<Output>& outputs, const Image& picture,
+                   const ColorConfig& colors, const std::string& canonical_request) {
+  for (const Output& output : outputs)
+    write_atomically(output.file, [&](const fs::path& temporary) {
+      write_form(temporary, picture, output.form, colors, canonical_request);
+    });
+}
+
+}  // namespace translucube::server

@@ -1,0 +1,147 @@
+#include <malloc.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdlib>
+#include <iostream>
+#include <mutex>
+#include <thread>
+
+#include "picture/image_io.h"
+#include "server/base/log.h"
+#include "server/base/signals.h"
+#include "server/calls/front.h"
+#include "server/calls/router.h"
+#include "server/cli/verbs.h"
+#include "server/http/server.h"
+#include "server/store/data_folder.h"
+
+namespace translucube::server {
+namespace {
+
+// All that was promised is on the disk at any time: what has not ended by then may be cut off.
+constexpr std::chrono::seconds longest_drain(8);
+
+api::Catalog configured(const ServeOptions& options) {
+  api::Catalog catalog = api::load_catalog(config_file(options.config));
+  api::ServerConfig& server = catalog.server;
+  server.host = options.host.value_or(server.host);
+  server.port = options.port.value_or(server.port);
+  server.threads_per_worker = options.threads.value_or(server.threads_per_worker);
+  server.workers = options.workers.value_or(server.workers);
+  server.data_folder = options.data.value_or(server.data_folder);
+  if (options.tokens) server.tokens_file = options.tokens;
+  return catalog;
+}
+
+/// Ends the process if it outlives the time it has.
+class Watchdog {
+ public:
+  explicit Watchdog(std::chrono::seconds time)
+      : thread_([time](std::stop_token ended) {
+          std::mutex mutex;
+          std::condition_variable_any condition;
+          std::unique_lock lock(mutex);
+          condition.wait_for(lock, ended, time, [] { return false; });
+          if (ended.stop_requested()) return;
+          spdlog::warn("not drained in time: ends as it is");
+          std::_Exit(0);
+        }) {}
+
+ private:
+  std::jthread thread_;
+};
+
+HttpOptions http_options(const api::Catalog& catalog) {
+  const api::ServerConfig& config = catalog.server;
+  HttpOptions http;
+  http.host = config.host;
+  http.port = config.port;
+  http.body_bytes = catalog.limits.body_bytes;
+  // What may take long is bounded by places of its own: http_threads are left for all else.
+  http.threads =
+      config.http_threads + config.waiting_requests + config.event_streams + config.transfers;
+  http.transfers = config.transfers;
+  http.connections = config.connections;
+  http.header_timeout = std::chrono::seconds(config.header_timeout_s);
+  http.idle_timeout = std::chrono::seconds(config.idle_timeout_s);
+  http.transfer_timeout = std::chrono::seconds(config.transfer_timeout_s);
+  return http;
+}
+
+StoreGauges gauges_of(const QueueGauges& queue) {
+  StoreGauges gauges;
+  for (const api::JobState state : api::all_job_states) {
+    const auto index = static_cast<std::size_t>(state);
+    gauges.renders[std::string(name(state))] = queue.jobs[index];
+    gauges.sweeps[std::string(name(state))] = queue.sweeps[index];
+  }
+  gauges.tasks = {{"interactive", queue.waiting_tasks[0]}, {"batch", queue.waiting_tasks[1]}};
+  gauges.queue_depth = gauges.renders["queued"];
+  gauges.oldest_queued_age_s = queue.oldest_waiting_s;
+  gauges.results = queue.results;
+  gauges.result_bytes = queue.result_bytes;
+  return gauges;
+}
+
+int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
+  // An arena for each of a hundred threads would keep what any of them once needed.
+  ::mallopt(M_ARENA_MAX, 4);
+  // What a film or the state of a large sweep took goes back to the system. Left to itself, the
+  // library raises both as soon as it has met one.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  ::mallopt(M_TRIM_THRESHOLD, 1 << 20);
+  prepare_image_codecs();
+  const api::Catalog catalog = configured(options);
+  set_up_log(catalog.server.log_format);
+  AccessPolicy policy = access_policy(catalog.server);
+  const ColorConfig colors(catalog.display_config);
+  const DataFolder folder(catalog.server.data_folder);
+  StoreOptions queue;
+  queue.most_queued = catalog.server.queue_length;
+  queue.interactive_seconds = catalog.server.interactive_seconds;
+  JobStore store(folder.store_file(), queue);
+  ArtifactStore artifacts(folder.artifacts());
+  Metrics metrics;
+  metrics.set_store_gauges([&store] { return gauges_of(store.gauges()); });
+  JobService service(catalog, colors, store, artifacts, metrics);
+  Endpoints endpoints{service, catalog, colors};
+  Front front(std::move(policy), metrics,
+              [&](const HttpRequest& request) { return respond(endpoints, request); });
+  HttpServer server(front.handlers(), http_options(catalog));
+
+  std::jthread http([&] { server.run(); });
+  while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const std::string& host = catalog.server.host;
+  std::cout << "listening on http://" << (host.find(':') == host.npos ? host : '[' + host + ']')
+            << ':' << server.port() << std::endl;
+
+  signal.wait(0);
+  spdlog::info("signal {}: shutting down", signal.load());
+  const Watchdog watchdog(longest_drain);
+  service.shut_down(std::chrono::seconds(catalog.server.drain_s));
+  server.stop();
+  http.join();
+  return 0;
+}
+
+}  // namespace
+
+int run_serve(const ServeOptions& options) {
+  std::atomic<int> signal = 0;
+  const SignalWatch watch([&](int received) {
+    signal = received;
+    signal.notify_all();
+  });
+  try {
+    return serve_or_throw(options, signal);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return exit_failure;
+  }
+}
+
+}  // namespace translucube::server

@@ -1,0 +1,56 @@
+#pragma once
+
+// HTTP requests and answers as plain values, so that everything but the socket can be tried by
+// hand.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "server/base/file.h"
+
+namespace translucube::server {
+
+struct HttpRequest {
+  std::string method, path;  ///< the path is decoded, without the query
+  std::vector<std::pair<std::string, std::string>> query;
+  std::map<std::string, std::string> headers;  ///< by lower-case name; repeated ones joined by ", "
+  std::string body;
+  std::string id = {};      ///< of the request: the client's or a new one, for the log
+  std::string client = {};  ///< name of the token it carries, "" where none is needed
+
+  std::string_view header(const std::string& lower_case_name) const {
+    const auto it = headers.find(lower_case_name);
+    return it == headers.end() ? std::string_view() : std::string_view(it->second);
+  }
+};
+
+/// A part of a file, sent without reading it whole.
+struct FileSlice {
+  std::shared_ptr<const OpenFile> file;
+  std::uint64_t offset = 0, length = 0;
+};
+
+/// Server-sent events as they come, sent with status 200 and no end that is known before.
+struct EventStream {
+  /// The next bytes to send. Waits for a second at most: "" says that there is nothing yet, nullopt
+  /// that the stream is over. Called by one thread at a time; destroyed as soon as the client has
+  /// hung up or the service stops.
+  std::function<std::optional<std::string>()> next;
+};
+
+struct HttpResponse {
+  int status = 200;
+  std::vector<std::pair<std::string, std::string>> headers;
+  std::string content_type;
+  std::variant<std::string, FileSlice, EventStream> body;
+};
+
+}  // namespace translucube::server

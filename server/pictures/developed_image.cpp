@@ -1,0 +1,68 @@
+#include "server/pictures/developed_image.h"
+
+#include "renderer/film/explorable.h"
+#include "server/base/ids.h"
+
+namespace translucube::server {
+namespace {
+
+using api::Problem;
+
+ImageFile unkept(const Darkroom& darkroom, Image image, const ImageForm& form,
+                 const std::string& request, const std::string& identity) {
+  auto file = OpenFile::in_memory([&](const std::filesystem::path& path) {
+    write_form(path, std::move(image), form, darkroom.colors, request);
+  });
+  return {std::move(file), std::string(mime_type(form.format)),
+          '"' + content_hash(identity + '\n' + request + '\n' + form_name(form)) + '"'};
+}
+
+}  // namespace
+
+ImageFile redeveloped_image(Darkroom& darkroom, const StoredResult& result,
+                            const api::Redeveloped& redeveloped, const ImageForm& form) {
+  const std::string name = explorable_name(result.image);
+  const auto film = darkroom.explorables.get(name, [&] {
+    // One at a time: each takes much memory.
+    const std::lock_guard lock(darkroom.busy);
+    return read_explorable(darkroom.artifacts.path(result.content, name)).film;
+  });
+  Image image = develop_explorable(*film, redeveloped.absorption.absorber,
+                                   redeveloped.absorption.sigma_a_peak);
+  darkroom.metrics.count_developed_image();
+  return unkept(darkroom, std::move(image), form, redeveloped.request, name);
+}
+
+std::optional<std::variant<ImageFile, Problem>> partial_image(Darkroom& darkroom, LiveFilm& live,
+                                                              const std::string& id,
+                                                              const std::string& request,
+                                                              const ImageQuery& query) {
+  const auto checked = image_form(query, darkroom.colors.displays());
+  if (const auto* problem = std::get_if<Problem>(&checked)) return *problem;
+  std::optional<api::Redeveloped> redeveloped;
+  if (query.redevelopment.asked()) {
+    auto made = api::redevelop(request, query.redevelopment, darkroom.catalog);
+    if (auto* problem = std::get_if<Problem>(&made)) return std::move(*problem);
+    redeveloped = std::get<api::Redeveloped>(std::move(made));
+  }
+  Image image;
+  std::uint32_t samples = 0;
+  {
+    const std::lock_guard lock(live.mutex);
+    const Film& film = live.film;
+    samples = film.samples;
+    if (samples == 0 || film.counters.nan_samples > 0) return std::nullopt;
+    if (!film.shares)
+      image = develop(film, 0);
+    else if (redeveloped)
+      image = develop_shares(*live.scene, film, redeveloped->absorption.absorber,
+                             redeveloped->absorption.sigma_a_peak);
+    else
+      image = develop_shares(*live.scene, film);
+  }
+  const std::string so_far =
+      api::with_samples(redeveloped ? redeveloped->request : request, samples);
+  return unkept(darkroom, std::move(image), std::get<ImageForm>(checked), so_far, "live " + id);
+}
+
+}  // namespace translucube::server

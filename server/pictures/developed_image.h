@@ -1,0 +1,29 @@
+#pragma once
+
+// Pictures that are developed for whoever asks and not kept: of an explorable render for another
+// absorber, and of a render that is still being traced.
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "server/pictures/image_artifacts.h"
+#include "server/pictures/live_films.h"
+
+namespace translucube::server {
+
+/// A finished explorable render through another absorber; `image`: the name of its picture, whose
+/// film lies beside it. Throws ImageError where that cannot be read, ColorError, FileError.
+ImageFile redeveloped_image(Darkroom& darkroom, const StoredResult& result,
+                            const api::Redeveloped& redeveloped, const ImageForm& form);
+
+/// What is there of a render, through another absorber where the query asks for one. Empty where
+/// nothing is to be seen yet. It carries the request with the samples so far; of an explorable
+/// render, whose finished film is kept in half floats, it differs from that by their rounding.
+std::optional<std::variant<ImageFile, api::Problem>> partial_image(Darkroom& darkroom,
+                                                                   LiveFilm& live,
+                                                                   const std::string& id,
+                                                                   const std::string& request,
+                                                                   const ImageQuery& query);
+
+}  // namespace translucube::server

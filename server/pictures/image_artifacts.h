@@ -1,0 +1,83 @@
+#pragma once
+
+#include <compare>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "api/base/problem.h"
+#include "api/request/catalog.h"
+#include "api/request/redevelop.h"
+#include "picture/color.h"
+#include "picture/image_io.h"
+#include "server/base/metrics.h"
+#include "server/pictures/explorable_cache.h"
+#include "server/store/artifact_store.h"
+#include "server/store/job_store.h"
+
+namespace translucube::server {
+
+/// Which form of a render's image. EXR is scene-linear in a colorspace; the others are made for a
+/// display and a view.
+struct ImageQuery {
+  ImageFormat format = ImageFormat::png;
+  std::optional<std::string> display, view, colorspace;
+  api::Redevelopment redevelopment{};  ///< of an explorable render
+  bool partial = false;                ///< also of a render that has not ended
+
+  auto operator<=>(const ImageQuery&) const = default;
+};
+
+/// An image query with every default filled in.
+struct ImageForm {
+  ImageFormat format = ImageFormat::png;
+  std::string display, view;  ///< where the format is for a display
+  std::string colorspace;     ///< where it is scene-linear
+};
+
+/// The form as a file's name: "sRGB-plain.png".
+std::string form_name(const ImageForm& form);
+
+/// Checks the query against what there is.
+std::variant<ImageForm, api::Problem> image_form(const ImageQuery& query,
+                                                 const std::vector<Display>& displays);
+
+/// Brings scene-linear Rec.709 into the form and writes it. Throws ImageError, ColorError.
+void write_form(const std::filesystem::path& file, Image image, const ImageForm& form,
+                const ColorConfig& colors, const std::string& canonical_request);
+
+struct ImageFile {
+  std::shared_ptr<const OpenFile> file;
+  std::string mime_type;
+  std::string etag;  ///< strong, with its quotes
+};
+
+/// The artifact that holds the path lengths of an explorable render, beside this image.
+std::string explorable_name(const std::string& image);
+
+/// Removes the files of a result that the store no longer has. A picture that was made anew
+/// meanwhile has another name and stays. Throws FileError.
+void remove_files(ArtifactStore& artifacts, const StoredResult& result);
+
+/// What makes pictures of other pictures.
+struct Darkroom {
+  const api::Catalog& catalog;
+  const ColorConfig& colors;
+  JobStore& store;
+  ArtifactStore& artifacts;
+  Metrics& metrics;
+  ExplorableCache& explorables;
+  std::mutex busy{};  ///< of those that are kept, one at a time: each takes much memory
+};
+
+/// A finished picture in the form asked for: made on the first demand, then kept beside the EXR,
+/// unless it is of another absorber (developed_image.h).
+/// `request`: the picture's, canonical. A problem where it has been removed to make room, or is not
+/// whole: then it is also forgotten. Throws FileError, StoreError.
+std::variant<ImageFile, api::Problem> image_artifact(Darkroom& darkroom, const std::string& content,
+                                                     const std::string& request,
+                                                     const ImageQuery& query);
+
+}  // namespace translucube::server

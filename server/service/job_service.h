@@ -1,0 +1,164 @@
+#pragma once
+
+// What the service does, free of HTTP: the routes call this and nothing below it.
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "api/answer/render_status.h"
+#include "api/answer/sweep_status.h"
+#include "api/base/problem.h"
+#include "api/request/catalog.h"
+#include "picture/color.h"
+#include "server/base/recent.h"
+#include "server/pictures/explorable_cache.h"
+#include "server/pictures/image_artifacts.h"
+#include "server/pictures/live_films.h"
+#include "server/store/artifact_store.h"
+#include "server/store/job_store.h"
+#include "server/worker/worker.h"
+
+namespace translucube::server {
+
+template <typename T>
+using Result = std::variant<T, api::Problem>;
+
+template <typename Status>
+struct Accepted {
+  Status status;
+  bool created = false;  ///< false: the idempotency key named it already
+};
+using Submission = Accepted<api::RenderStatus>;
+using SweepSubmission = Accepted<api::SweepStatus>;
+
+/// The state of a render or sweep, as a client is told it.
+struct Told {
+  api::JobState state = api::JobState::queued;
+  std::string json, etag;
+};
+using ToldText = std::shared_ptr<const Told>;
+template <typename Status>
+ToldText told(const Status& status) {
+  std::string json = to_json(status);
+  std::string etag = '"' + content_hash(json) + '"';
+  return std::make_shared<const Told>(Told{status.state, std::move(json), std::move(etag)});
+}
+
+struct RenderPage {
+  std::vector<api::RenderStatus> renders;
+  std::optional<std::string> next_cursor;
+};
+struct SweepPage {
+  std::vector<api::SweepSummary> sweeps;
+  std::optional<std::string> next_cursor;
+};
+
+struct ListQuery {
+  std::optional<api::JobState> state;
+  std::optional<std::string> cursor;
+  int limit = 50;
+};
+
+/// Accepts, reports, cancels and removes renders and sweeps, and owns the workers that trace them.
+/// Safe to share by threads. The catalog, colours, stores and metrics outlive it.
+class JobService {
+ public:
+  JobService(const api::Catalog& catalog, const ColorConfig& colors, JobStore& store,
+             ArtifactStore& artifacts, Metrics& metrics, Engine engine = {});
+  ~JobService();
+
+  // Renders (job_service.cpp).
+  Result<Submission> submit(std::string_view document,
+                            const std::optional<std::string>& idempotency_key);
+  Result<api::RenderStatus> get(const std::string& id) const;
+  /// `get` as text, without a look into the store where the render has ended and was asked for.
+  Result<ToldText> tell(const std::string& id);
+  Result<RenderPage> list(const ListQuery& query) const;
+  /// A render that has ended stays as it ended.
+  Result<api::RenderStatus> cancel(const std::string& id);
+  /// Cancels if needed and removes all data.
+  std::optional<api::Problem> remove(const std::string& id);
+  Result<ImageFile> image(const std::string& id, const ImageQuery& query);
+  /// Samples of what `image` with `partial` shows of a render that is being traced; 0: nothing.
+  std::uint32_t samples_to_see(const std::string& id) const { return live_films_.samples(id); }
+
+  // Sweeps (job_service_sweeps.cpp).
+  /// What a dry run answers, JSON text.
+  Result<std::string> count_sweep(std::string_view document) const;
+  Result<SweepSubmission> submit_sweep(std::string_view document,
+                                       const std::optional<std::string>& idempotency_key);
+  Result<api::SweepStatus> get_sweep(const std::string& id) const;
+  Result<ToldText> tell_sweep(const std::string& id) const;
+  Result<SweepPage> list_sweeps(const ListQuery& query) const;
+  Result<api::SweepStatus> cancel_sweep(const std::string& id);
+  std::optional<api::Problem> remove_sweep(const std::string& id);
+  /// `point`: a client's text.
+  Result<ImageFile> point_image(const std::string& id, const std::string& point,
+                                const ImageQuery& query);
+
+  /// The contact sheet, of what is there so far.
+  Result<ImageFile> sheet(const std::string& id, const ImageQuery& query);
+
+  // Changes (job_service_changes.cpp).
+  /// Calls `look` now and after every change, until it returns true, the time is over or the
+  /// service stops.
+  void watch(std::chrono::milliseconds time, const std::function<bool()>& look);
+  /// Those after `number`, and whether the last of them is the end of the render or sweep.
+  struct Events {
+    std::vector<Event> events;
+    bool ended = false;
+  };
+  Result<Events> events_of_render(const std::string& id, std::uint64_t after) const;
+  Result<Events> events_of_sweep(const std::string& id, std::uint64_t after) const;
+
+  /// Empty if the service can take work, else the reason why not.
+  std::optional<std::string> unready_reason();
+  QueueGauges gauges() const { return store_.gauges(); }
+
+  /// Refuses new work and ends all waiting. Passes under way may take `drain` to end, so that they
+  /// are kept; then stops the workers at their next tile and gives their tasks back to the store.
+  void shut_down(std::chrono::milliseconds drain = {});
+  bool stopping() const;
+
+ private:
+  std::optional<api::Problem> refusal() const;
+  void clean_artifacts();
+  void keep_within_quota();
+  void discard_files(const std::string& folder);
+  void discard_result(const StoredResult& result);
+  void changed();
+
+  const api::Catalog& catalog_;
+  const ColorConfig& colors_;
+  JobStore& store_;
+  ArtifactStore& artifacts_;
+  Metrics& metrics_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable change_;
+  std::uint64_t changes_ = 0;
+  bool stopping_ = false;
+
+  std::mutex probe_mutex_, quota_mutex_;
+  std::chrono::steady_clock::time_point probed_at_{};
+  std::optional<std::string> probe_failure_;
+
+  LiveFilms live_films_;
+  ExplorableCache explorables_;
+  Darkroom darkroom_;
+  // What is asked again and again. A render that has ended stays as it is until it is removed; of a
+  // picture, it is seen once in a while that it still lies there, and is used.
+  Recent<std::string, ToldText> ended_{4096};
+  Recent<std::pair<std::string, ImageQuery>, ImageFile> pictures_{256, std::chrono::seconds(1)};
+  std::unique_ptr<WorkerPool> workers_;
+};
+
+}  // namespace translucube::server

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "api/base/problem.h"
+#include "api/request/catalog.h"
+#include "server/store/job_store.h"
+
+namespace translucube::server {
+
+/// A job as the renderer sees it: the requests whose pictures are developed from its one tracing. A
+/// render has one; an image of a sweep one for each of its points. Never empty.
+struct TracedJob {
+  std::vector<api::RenderRequest> requests;
+  std::vector<std::string> canonical;  ///< of each
+  std::vector<std::string> contents;   ///< of each: where its picture goes
+
+  const Quality& quality() const { return requests.front().quality; }
+  std::uint64_t pixels() const {
+    return std::uint64_t(requests.front().width) * std::uint64_t(requests.front().height);
+  }
+};
+
+/// A problem where what the job names has gone since it was accepted. Throws StoreError.
+std::variant<TracedJob, api::Problem> traced_job(const Job& job, const JobStore& store,
+                                                 const api::Catalog& catalog);
+
+}  // namespace translucube::server
