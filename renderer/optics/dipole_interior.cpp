@@ -1,6 +1,6 @@
-#include "renderer/optics/dipole_interior.h"
-
 #include <variant>
+
+#include "renderer/optics/interior.h"
 
 namespace translucube {
 

@@ -17,6 +17,10 @@ AnyInterior make_interior(const Material& material, double unit_mm) {
   return ScatteringInterior{Medium{material.coefficients.sigma_s * unit_mm, material.g}};
 }
 
+bool is_open(const AnyInterior& interior) {
+  return std::visit([](const auto& i) { return i.facts.open; }, interior);
+}
+
 std::string transport_name(const AnyInterior& interior) {
   struct Name {
     std::string operator()(const BlackInterior&) const { return "interface"; }

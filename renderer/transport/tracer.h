@@ -50,19 +50,18 @@ inline constexpr std::uint32_t dipole_arrival_cap = 16;
 template <class Shape, class Interface, class Interior>
 class Tracer {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  static constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
-  static constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
-  static constexpr bool lambertian = std::is_same_v<Interior, LambertianInterior>;
-  static constexpr bool dense = std::is_same_v<Interior, DensePigmentInterior>;
-  static constexpr bool dipole = std::is_same_v<Interior, DipoleInterior>;
+  static constexpr bool smooth = Interface::smooth;
+  static constexpr bool scattering = Interior::facts.scatters;
+  static constexpr bool lambertian = Interior::facts.diffuse;
+  static constexpr bool dense = Interior::facts.half_space;
+  static constexpr bool dipole = Interior::facts.dipole;
   /// Whether walks go on together in SIMD, and their vertices may look for light through the
   /// boundary.
   static constexpr bool connecting = scattering && std::is_same_v<Shape, Sphere>;
   using Connector = std::conditional_t<!connecting, NoConnector,
                                        std::conditional_t<smooth, SphereConnector, RoughConnector>>;
   /// Whether light goes on inside the body.
-  static constexpr bool open =
-      scattering || dense || dipole || std::is_same_v<Interior, ClearInterior>;
+  static constexpr bool open = Interior::facts.open || dense;
 
  public:
   Tracer(const Scene& scene, const Shape& shape, const Interface& interface,
