@@ -59,7 +59,7 @@ class Tracer {
   /// boundary.
   static constexpr bool connecting = scattering && std::is_same_v<Shape, Sphere>;
   using Connector = std::conditional_t<!connecting, NoConnector,
-                                       std::conditional_t<smooth, SphereConnector, RoughConnector>>;
+                                       std::conditional_t<smooth, SmoothConnector, RoughConnector>>;
   /// Whether light goes on inside the body.
   static constexpr bool open = Interior::facts.open || dense;
 
