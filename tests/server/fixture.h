@@ -14,6 +14,7 @@
 
 #include "api/request/catalog.h"
 #include "picture/color.h"
+#include "renderer/film/film_error.h"
 #include "server/base/file.h"
 #include "server/service/job_service.h"
 #include "server/store/artifact_store.h"
