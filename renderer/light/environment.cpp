@@ -3,51 +3,34 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "renderer/base/huge_pages.h"
+#include "renderer/light/cell_sampler.h"
 #include "renderer/light/environment_batch.h"
 
 namespace translucube {
 
 using std::numbers::pi;
 
-namespace {
-
-constexpr int block_size = 16, cells_of_a_block = block_size * block_size;
-
-/// How many of so many ascending values are not above x.
-template <int count>
-int passed(const float* values, float x) {
-  int n = 0;
-  for (int i = 0; i < count; ++i) n += values[i] <= x;
-  return n;
-}
-
-}  // namespace
-
 struct ImageEnvironment::Tables {
   HugePageVector<Texel> texels;
-  HugePageVector<double> blocks;
-  HugePageVector<float> rows, cells;
+  CellSampler cells;
 };
 
 ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, double scale,
                                    EnvironmentSide side)
     : width_(image.width), height_(image.height), rotation_rad_(rotation_rad), side_(side) {
-  const auto tables = std::make_shared<Tables>();
-  tables->texels.resize(std::size_t(width_) * height_);
-  for (std::size_t i = 0; i < tables->texels.size(); ++i) {
+  HugePageVector<Texel> texels(std::size_t(width_) * height_);
+  for (std::size_t i = 0; i < texels.size(); ++i) {
     const float* p = &image.pixels[3 * i];
     const auto s = static_cast<float>(scale);
-    tables->texels[i] = {p[0] * s, p[1] * s, p[2] * s, 0};
+    texels[i] = {p[0] * s, p[1] * s, p[2] * s, 0};
   }
-  build_sampling(*tables);
-  texels_ = tables->texels;
-  blocks_ = tables->blocks;
-  rows_ = tables->rows;
-  cells_ = tables->cells;
-  tables_ = tables;
+  const HugePageVector<double> weights = cell_weights(texels);
+  for (std::size_t i = 0; i < texels.size(); ++i) texels[i].weight = static_cast<float>(weights[i]);
+  tables_ = std::make_shared<const Tables>(
+      Tables{std::move(texels), CellSampler(width_, height_, weights)});
+  texels_ = tables_->texels;
   build_irradiance();
 }
 
@@ -59,8 +42,7 @@ bool ImageEnvironment::hides(int column) const {
   return is_behind(column) && is_behind(column + 1);
 }
 
-void ImageEnvironment::build_sampling(Tables& tables) {
-  auto& [texels, blocks, rows, cells] = tables;
+HugePageVector<double> ImageEnvironment::cell_weights(std::span<const Texel> texels) const {
   // The integral of the bilinear interpolant over a cell is its tent filter (1, 6, 1) / 8.
   HugePageVector<double> across;  // the filter along the rows
   across.reserve(texels.size());
@@ -81,8 +63,7 @@ void ImageEnvironment::build_sampling(Tables& tables) {
   const auto row = [&](int x, int y) {
     return across[std::size_t(std::clamp(y, 0, height_ - 1)) * width_ + x];
   };
-  const std::size_t n = texels.size();
-  HugePageVector<double> weight(n);
+  HugePageVector<double> weights(texels.size());
   std::vector<char> hidden;
   hidden.reserve(width_);
   for (int x = 0; x < width_; ++x) hidden.push_back(hides(x));
@@ -92,39 +73,16 @@ void ImageEnvironment::build_sampling(Tables& tables) {
     for (int x = 0; x < width_; ++x) {
       if (hidden[x]) continue;
       const double mean = (row(x, y - 1) + 6 * row(x, y) + row(x, y + 1)) / 64;
-      total += weight[std::size_t(y) * width_ + x] = mean * solid_angle;
+      total += weights[std::size_t(y) * width_ + x] = mean * solid_angle;
     }
   }
+  const auto n = static_cast<double>(texels.size());
   if (total <= 0) {  // a black map: any density will do
-    std::ranges::fill(weight, 1.0);
-    total = static_cast<double>(n);
+    std::ranges::fill(weights, 1.0);
+    total = n;
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    weight[i] *= static_cast<double>(n) / total;
-    texels[i].weight = static_cast<float>(weight[i]);
-  }
-  blocks_across_ = (width_ + block_size - 1) / block_size;
-  const int blocks_down = (height_ + block_size - 1) / block_size;
-  blocks.reserve(std::size_t(blocks_across_) * blocks_down);
-  cells.reserve(blocks.capacity() * cells_of_a_block);
-  rows.reserve(blocks.capacity() * block_size);
-  double all = 0;
-  for (int by = 0; by < blocks_down; ++by)
-    for (int bx = 0; bx < blocks_across_; ++bx) {
-      std::array<double, cells_of_a_block> sums{};
-      double sum = 0;
-      for (int i = 0; i < cells_of_a_block; ++i) {
-        const int x = bx * block_size + i % block_size, y = by * block_size + i / block_size;
-        if (x < width_ && y < height_) sum += weight[std::size_t(y) * width_ + x];
-        sums[i] = sum;
-      }
-      for (int i = 0; i < cells_of_a_block; ++i) {
-        cells.push_back(sum > 0 ? static_cast<float>(sums[i] / sum) : 0);
-        if (i % block_size == block_size - 1) rows.push_back(cells.back());
-      }
-      blocks.push_back(all += sum / static_cast<double>(n));
-    }
-  for (double& sum : blocks) sum /= all;
+  for (double& weight : weights) weight *= n / total;
+  return weights;
 }
 
 namespace {
@@ -172,11 +130,6 @@ void ImageEnvironment::build_irradiance() {
                       static_cast<float>(scale * moments[i][1]),
                       static_cast<float>(scale * moments[i][2])};
   }
-}
-
-Rgb ImageEnvironment::irradiance(Vec3 n) const {
-  const std::array<Rgb, 3> orders = irradiance_by_order(n);
-  return orders[0] + orders[1] + orders[2];
 }
 
 std::array<Rgb, 3> ImageEnvironment::irradiance_by_order(Vec3 n) const {
@@ -243,38 +196,6 @@ void ImageEnvironment::prefetch(float x, float y) const {
   __builtin_prefetch(upper + (row + 1 < height_ ? width_ : 0));
 }
 
-ImageEnvironment::Draw ImageEnvironment::draw_block(double u, std::size_t at_least) const {
-  const auto last = blocks_.end() - 1;
-  auto block = blocks_.begin() + static_cast<std::ptrdiff_t>(at_least);
-  if (at_least > 0 && u < block[-1])
-    block = std::upper_bound(blocks_.begin(), last, u);
-  else
-    for (int step = 0; block < last && *block <= u; ++step)
-      block = step < 16 ? block + 1 : std::upper_bound(block, last, u);
-  const double before = block > blocks_.begin() ? block[-1] : 0;
-  return {static_cast<std::size_t>(block - blocks_.begin()),
-          std::fmin(static_cast<float>((u - before) / (*block - before)), 0x1.fffffep-1f), 0};
-}
-
-void ImageEnvironment::draw_row(Draw& draw) const {
-  draw.row = passed<block_size - 1>(&rows_[draw.block * block_size], draw.rest);
-}
-
-MapCoordinates ImageEnvironment::draw_cell(const Draw& draw, double v) const {
-  const float* cells = &cells_[draw.block * cells_of_a_block];
-  const float* row = cells + draw.row * block_size;
-  const int column = passed<block_size - 1>(row, draw.rest);
-  const int cell = draw.row * block_size + column;
-  const float below = cell > 0 ? cells[cell - 1] : 0;
-  const auto bx = static_cast<int>(draw.block) % blocks_across_,
-             by = static_cast<int>(draw.block) / blocks_across_;
-  const float x =
-      static_cast<float>(bx * block_size + column) +
-      std::clamp((draw.rest - below) / std::fmax(cells[cell] - below, 1e-30f), 0.0f, 1.0f);
-  const float y = static_cast<float>(by * block_size + draw.row) + static_cast<float>(v);
-  return {x, y, 0};
-}
-
 Vec3 ImageEnvironment::direction(MapCoordinates at) const {
   const double azimuth = 2 * pi * (0.5 - at.x / width_) + rotation_rad_;
   return {at.sin_theta * std::sin(azimuth), std::cos(pi * at.y / height_),
@@ -282,34 +203,23 @@ Vec3 ImageEnvironment::direction(MapCoordinates at) const {
 }
 
 EnvironmentSample ImageEnvironment::sample(Sample2 u) const {
-  Draw draw = draw_block(u.u, 0);
-  draw_row(draw);
-  MapCoordinates at = draw_cell(draw, u.v);
-  at.sin_theta = std::sin(static_cast<float>(pi) / static_cast<float>(height_) * at.y);
+  const auto [x, y] = tables_->cells.draw(u);
+  const MapCoordinates at{x, y, std::sin(static_cast<float>(pi) / static_cast<float>(height_) * y)};
   const Vec3 towards = direction(at);
   return {towards, seen(towards, value_at(at))};
 }
 
 std::vector<EnvironmentSample> ImageEnvironment::sample(std::span<const Sample2> u) const {
-  std::vector<Draw> draws;
-  draws.reserve(u.size());
-  for (const Sample2& sample : u) {
-    draws.push_back(draw_block(sample.u, draws.empty() ? 0 : draws.back().block));
-    __builtin_prefetch(&rows_[draws.back().block * block_size]);
-  }
-  for (Draw& draw : draws) {
-    draw_row(draw);
-    __builtin_prefetch(&cells_[draw.block * cells_of_a_block + draw.row * block_size]);
-  }
+  const std::vector<CellPlace> places = tables_->cells.draw(u);
   std::vector<EnvironmentSample> samples(u.size());
   MapDirections batch;
   for (std::size_t first = 0; first < u.size(); first += MapDirections::capacity) {
     batch.size = std::min(MapDirections::capacity, u.size() - first);
     for (std::size_t i = 0; i < batch.size; ++i) {
-      const MapCoordinates at = draw_cell(draws[first + i], u[first + i].v);
-      prefetch(at.x, at.y);
-      batch.u[i] = at.x;
-      batch.v[i] = at.y;
+      const auto [x, y] = places[first + i];
+      prefetch(x, y);
+      batch.u[i] = x;
+      batch.v[i] = y;
     }
     batch.find(geometry());
     for (std::size_t i = 0; i < batch.size; ++i) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "picture/image.h"
+#include "renderer/base/huge_pages.h"
 #include "renderer/base/sampler.h"
 #include "renderer/base/vec.h"
 
@@ -23,12 +24,12 @@ struct EnvironmentSample {
   EnvironmentValue value;
 };
 
-/// The same radiance from everywhere.
+/// Light with the same radiance from everywhere.
 struct UniformEnvironment {
   Rgb radiance{1, 1, 1};
 };
 
-/// What of a map is seen: a plane behind the body hides what lies towards -z.
+/// Which part of a map is seen: a plane behind the body hides what lies towards -z.
 enum class EnvironmentSide { all, front };
 
 /// Where a direction lies in a map.
@@ -53,7 +54,7 @@ class ImageEnvironment {
     return seen(direction, value_at(coordinates(direction)));
   }
   EnvironmentSide side() const { return side_; }
-  /// Of the map, whether it is hidden or not.
+  /// The map's light there, whether it is hidden or not.
   EnvironmentValue value_at(MapCoordinates at) const;
   MapGeometry geometry() const;
   /// Calls the pixels for value_at() into the cache.
@@ -66,10 +67,9 @@ class ImageEnvironment {
   std::vector<EnvironmentSample> sample(std::span<const Sample2> u) const;
   Vec3 direction(MapCoordinates at) const;
   /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order
-  /// (Ramamoorthi and Hanrahan 2001): within a few percent, and possibly negative under a hard sun.
-  Rgb irradiance(Vec3 n) const;
-  /// The same by order, 0 to 2: of a normal at an angle from n, averaged about n, it is their sum
-  /// with the Legendre polynomials of the angle's cosine as weights.
+  /// (Ramamoorthi and Hanrahan 2001), order by order: their sum is right within a few percent, and
+  /// possibly negative under a hard sun. For a normal at an angle from n, averaged about n, the
+  /// irradiance is the sum with the Legendre polynomials of the angle's cosine as weights.
   std::array<Rgb, 3> irradiance_by_order(Vec3 n) const;
 
  private:
@@ -83,33 +83,19 @@ class ImageEnvironment {
     float r, g, b, weight;  ///< weight: probability of the pixel cell x number of cells
   };
   MapCoordinates coordinates(Vec3 direction) const;
-  // Drawing, step by step: each reads a cache line that is not likely to be near.
-  struct Draw {
-    std::size_t block;
-    float rest;  ///< of the number, within the block
-    int row;
-  };
-  Draw draw_block(double u, std::size_t at_least) const;
-  void draw_row(Draw& draw) const;
-  /// In the map, but for sin_theta.
-  MapCoordinates draw_cell(const Draw& draw, double v) const;
   Rgb bilinear(float x, float y) const;
   double cell_pdf(int x, int y, double sin_theta) const;
-  struct Tables;
-  void build_sampling(Tables& tables);
+  /// The light of each cell, 1 in the mean.
+  HugePageVector<double> cell_weights(std::span<const Texel> texels) const;
   void build_irradiance();
 
   int width_, height_;
   double rotation_rad_;
   EnvironmentSide side_;
-  std::span<const Texel> texels_;
-  // The chances of the cells, block by block of the map and summed up: over the blocks, and within
-  // each over its rows and over its cells (row by row, 1 at its end).
-  int blocks_across_ = 0;
-  std::span<const double> blocks_;
-  std::span<const float> rows_, cells_;
+  struct Tables;
+  std::shared_ptr<const Tables> tables_;  ///< copies share them
+  std::span<const Texel> texels_;         ///< of the tables
   std::array<Rgb, 9> irradiance_;         ///< coefficients of the polynomials of quadratic_basis()
-  std::shared_ptr<const Tables> tables_;  ///< what the spans show: copies share it
 };
 
 using Environment = std::variant<UniformEnvironment, ImageEnvironment>;
