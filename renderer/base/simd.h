@@ -119,7 +119,7 @@ HWY_INLINE Bits select(Mask which, Bits yes, Bits no) {
 }
 /// from, from + 1 ...
 HWY_INLINE Bits counting(std::size_t from) {
-  return hn::Iota(DU(), static_cast<std::uint32_t>(from));
+  return Bits(hn::Iota(DU(), 0)) + Bits(static_cast<std::uint32_t>(from));
 }
 
 /// Whole numbers below 2^31 as numbers, and numbers without their fraction as whole ones.
@@ -157,7 +157,7 @@ HWY_INLINE Vector normalize(Vector a) { return (Real(1) / sqrt(dot(a, a))) * a; 
 HWY_INLINE Vector select(Mask which, Vector yes, Vector no) {
   return {select(which, yes.x, no.x), select(which, yes.y, no.y), select(which, yes.z, no.z)};
 }
-/// By the cosine to z and the angle about it.
+/// The direction with this cosine to z and this angle about it.
 HWY_INLINE Vector direction(Real cosine, Real phi) {
   const Real sine = sqrt(max(fnma(cosine, cosine, 1), 0));
   return {sine * cos(phi), sine * sin(phi), cosine};
@@ -187,9 +187,9 @@ struct Random {
     drawn = drawn + Bits(0x9e3779b9u);
     return mix(mix(drawn + key_low) + key_high);
   }
-  /// In [0, 1).
+  /// A number in [0, 1).
   HWY_INLINE Real uniform() { return scaled(shift_right<8>(bits())); }
-  /// In (0, 1].
+  /// A number in (0, 1].
   HWY_INLINE Real uniform_positive() { return scaled(shift_right<8>(bits()) + Bits(1)); }
 
  private:

@@ -14,7 +14,7 @@ enum class BackdropKind {
   light_table,  ///< it shines by itself and reflects nothing
   print,        ///< it reflects as a Lambertian surface what falls on it
 };
-/// Of the light and the dark parts.
+/// How the light and the dark parts of the plane lie.
 enum class Pattern {
   plain,    ///< light everywhere
   checker,  ///< squares, half a period wide
@@ -34,7 +34,7 @@ struct BackdropSpec {
 /// to the eye. There is no optical contact; the body's face stays one against air.
 inline constexpr double contact_gap = 1e-6;
 
-/// In the body's coordinates.
+/// The plane as light meets it, in the body's coordinates.
 struct Backdrop {
   BackdropKind kind = BackdropKind::light_table;
   Pattern pattern = Pattern::plain;

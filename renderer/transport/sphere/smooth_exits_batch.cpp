@@ -1,7 +1,5 @@
 #include "renderer/transport/sphere/smooth_exits_batch.h"
 
-#include <algorithm>
-
 #include "renderer/optics/fresnel.h"
 
 // This file is compiled once for each instruction set: the order matters.
@@ -17,7 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace translucube::HWY_NAMESPACE {
 
-/// Share that a smooth boundary lets out, by the cosines inside and outside.
+/// Share that a smooth boundary lets out, by the cosines inside and outside: what
+/// Side::refraction() leaves, rounded in another order.
 HWY_INLINE Real transmittance(Real n, Real cos_i, Real cos_t) {
   const Real rs = fms(n, cos_i, cos_t) / fma(n, cos_i, cos_t);
   const Real rp = fnma(n, cos_t, cos_i) / fma(n, cos_t, cos_i);
@@ -60,14 +59,12 @@ struct Wanted : Vertex {
   }
 
   HWY_INLINE Root root() const {
-    if (branch == ExitBranch::near) {
-      // psi(x) >= x: from above, half the sine over one plus the cosine.
-      const Real guess = min(sin_theta / max(Real(1) + theta.c, tiny), 0.95f);
-      return solve(plane, theta, 0, 1, guess, true, 7);
-    }
-    if (branch == ExitBranch::far_falling)
-      return solve(plane, theta, 0, turn, Real(0.5f) * turn, false, 16);
-    return solve(plane, theta, turn, 1, Real(0.5f) * (turn + Real(1)), true, 16);
+    const bool falls = branch == ExitBranch::far_falling;
+    const Real low = plane.far && !falls ? turn : Real(0), high = falls ? turn : Real(1);
+    Real guess = Real(0.5f) * (low + high);
+    // On the near branch psi(x) >= x: from above, half the sine over one plus the cosine.
+    if (!plane.far) guess = min(sin_theta / max(Real(1) + theta.c, tiny), 0.95f);
+    return solve(plane, theta, low, high, guess, !falls, plane.far ? 16 : 7);
   }
 };
 
@@ -78,10 +75,7 @@ struct Exit {
   Real distance;
   Vector d;
 
-  HWY_INLINE Exit(const Wanted& from, Real n, Turn x) {
-    const Plane::Angles a = from.plane.at(x);
-    cos_i = a.i.c;
-    cos_t = a.t.c;
+  HWY_INLINE Exit(const Wanted& from, Real n, const Plane::Angles& a) : cos_i(a.i.c), cos_t(a.t.c) {
     const Real cos_beta = from.plane.far ? -a.beta.c : a.beta.c, sin_beta = a.beta.s;
     const Real slope = abs(fma(from.rho * cos_beta, n / max(cos_t, tiny) - Real(1) / cos_i, 1));
     jacobian =
@@ -106,7 +100,7 @@ struct Reachable {
       size += count(found);
     }
     // The last register is filled up.
-    std::fill_n(&numbers[size], at_once, size > 0 ? numbers[size - 1] : 0);
+    store(Bits(size > 0 ? numbers[size - 1] : 0), numbers, size);
   }
 };
 
@@ -124,7 +118,7 @@ void FindExits(const SmoothExitMedium& medium, ExitBranch branch, Division divis
     const Bits at = load(reachable.numbers, i);
     const Wanted from(n, branch, batch, at);
     const Root root = from.root();
-    const Exit exit(from, n, root.x);
+    const Exit exit(from, n, root.angles);
     const Real phase = henyey_greenstein(g, dot(load(batch.d, at), exit.d));
     const Real pdf = phase * exit.jacobian * exp(-(sigma_s * exit.distance));
     const Real by_walk = division == Division::balanced ? pdf : Real(0);

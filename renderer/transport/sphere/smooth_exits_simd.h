@@ -78,7 +78,7 @@ struct Plane {
 };
 
 struct Root {
-  Turn x;
+  Plane::Angles angles;
   Mask found;
 };
 
@@ -95,7 +95,7 @@ HWY_INLINE Root solve(const Plane& plane, Turn target, Real low, Real high, Real
     const Turn off = plane.psi(a) - target;
     const Real residual = (off.s + off.s) / max(Real(1) + off.c, 1e-3f);
     const Mask found = abs(residual) < tolerance;
-    if (step == steps || all(found)) return {x, found};
+    if (step == steps || all(found)) return {a, found};
     const Mask below = rises ? residual < 0 : residual > 0;
     low = select(below, h, low);
     high = select(below, high, h);

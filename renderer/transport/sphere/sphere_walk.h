@@ -1,5 +1,9 @@
 #pragma once
 
+// This room has what only a sphere is simple enough for: walks of many paths together, and light
+// that is looked for from their vertices through a smooth or a rough boundary. Nothing here knows
+// of a path's stages (../tracer.h) or of another shape.
+//
 // The random walk of walk.h in the unit sphere, for many paths at a time, in SIMD and single
 // precision. Event by event: each path that is at a collision takes a large step or a new
 // direction, then its next free flight. Where a body is dense all happens close to the boundary, so
@@ -29,7 +33,7 @@ struct WalkMedium {
     if (looking) margin = visited, falling = fall;
   }
 
-  /// The chance at a depth 1 - |p|^2.
+  /// The chance to look for light from the depth 1 - |p|^2.
   double chance(double depth2) const { return std::exp(-falling * 0.5 * sigma_s * depth2); }
 };
 
