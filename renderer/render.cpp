@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "renderer/base/deadline.h"
+#include "renderer/film/explorable_develop.h"
 #include "renderer/film/film_error.h"
 #include "renderer/scene/scene.h"
 #include "renderer/transport/transport.h"

@@ -1,10 +1,9 @@
-// Developing explorable films, finished and unfinished.
+#include "renderer/film/explorable_develop.h"
 
 #include <algorithm>
 #include <thread>
 
 #include "renderer/base/half.h"
-#include "renderer/film/explorable.h"
 
 namespace translucube {
 namespace {
@@ -12,7 +11,7 @@ namespace {
 using Operator = std::array<float, 9>;  ///< row-major
 
 /// What a lane does to light of each bin, the bin's scale included.
-std::vector<Operator> operators(const ExplorableBins& bins, const std::vector<float>& scales,
+std::vector<Operator> operators(const LengthBins& bins, const std::vector<float>& scales,
                                 const Lane& lane) {
   std::vector<Operator> all(static_cast<std::size_t>(bins.count()));
   for (int bin = 0; bin < bins.count(); ++bin)
@@ -103,9 +102,8 @@ Image develop_explorable(const ExplorableFilm& film, const Absorber& absorber, d
   return develop_explorable(film, make_lane(absorber, sigma_a_peak * film.unit_mm), threads);
 }
 
-Image develop_shares(const ExplorableBins& bins, const Film& film, const Lane& lane) {
-  const std::vector<float> scales(static_cast<std::size_t>(film.lanes),
-                                  film.samples > 0 ? 1.0f / static_cast<float>(film.samples) : 0);
+Image develop_shares(const LengthBins& bins, const Film& film, const Lane& lane) {
+  const std::vector<float> scales(static_cast<std::size_t>(film.lanes), to_mean(film));
   const std::vector<Operator> all = operators(bins, scales, lane);
   Image image(film.width, film.height);
   const float* in = film.sum.data();

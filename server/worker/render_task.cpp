@@ -12,7 +12,7 @@
 #include "api/request/sweep.h"
 #include "picture/image_io.h"
 #include "renderer/base/deadline.h"
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_file.h"
 #include "server/pictures/image_artifacts.h"
 #include "server/worker/task_watch.h"
 
