@@ -20,10 +20,10 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "api/base/job_state.h"
+#include "api/base/result.h"
 #include "renderer/film/film.h"
 #include "renderer/render.h"
 #include "server/base/clock.h"
@@ -84,8 +84,6 @@ struct NewJob {
   std::string content;
 };
 
-struct IdempotencyMismatch {};
-struct QueueFull {};
 struct Submitted {
   Job job;
   bool created = false;  ///< false: the key was used for the same request before
@@ -171,8 +169,9 @@ class JobStore {
   explicit JobStore(const std::filesystem::path& file, StoreOptions options = {});
   ~JobStore();
 
-  // Renders (job_store.cpp). A job whose result is there already has succeeded at once.
-  std::variant<Submitted, IdempotencyMismatch, QueueFull> submit(const NewJob& job);
+  // Renders (job_store.cpp). A job whose result is there already has succeeded at once. A submit is
+  // refused as refusals.h says.
+  api::Result<Submitted> submit(const NewJob& job);
   std::optional<Job> find(const std::string& id) const;  ///< renders, and images of sweeps
   std::vector<Job> list(const JobFilter& filter) const;  ///< renders, newest first
   /// Ends the job if it has not ended. The job as it is then; empty if there is none.
@@ -183,7 +182,7 @@ class JobStore {
   std::vector<Picture> pictures(const std::string& job_id) const;  ///< by lane
 
   // Sweeps (job_store_sweeps.cpp).
-  std::variant<SubmittedSweep, IdempotencyMismatch, QueueFull> submit(const NewSweep& sweep);
+  api::Result<SubmittedSweep> submit(const NewSweep& sweep);
   std::optional<StoredSweep> find_sweep(const std::string& id) const;
   std::vector<StoredSweep> list_sweeps(const JobFilter& filter) const;     ///< newest first
   std::vector<SweepImageState> sweep_images(const std::string& id) const;  ///< by index

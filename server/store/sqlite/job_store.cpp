@@ -54,21 +54,21 @@ void JobStore::insert_pictures(const std::string& id, const std::vector<Picture>
         .run();
 }
 
-std::variant<Submitted, IdempotencyMismatch, QueueFull> JobStore::submit(const NewJob& job) {
+api::Result<Submitted> JobStore::submit(const NewJob& job) {
   const Lock lock(writer_->mutex);
   Transaction transaction(*writer_);
   if (job.idempotency_key) {
     Statement same(*writer_, std::string(rows::select_job) + "WHERE idempotency_key = ?");
     if (same.bind(*job.idempotency_key).step()) {
       Job known = rows::job_of(same);
-      if (known.request != job.request) return IdempotencyMismatch{};
+      if (known.request != job.request) return idempotency_mismatch();
       return Submitted{std::move(known), false};
     }
   }
   const std::int64_t now = options_.clock();
   const std::optional<std::string> stats = use_results({{0, job.content}}, now);
   const bool cached = stats.has_value();
-  if (!cached && !queue_has_room(1)) return QueueFull{};
+  if (!cached && !queue_has_room(1)) return queue_full();
   const std::string id = ids_->next(now);
   Statement(*writer_,
             "INSERT INTO jobs(id, state, request, material, idempotency_key, created_ms, "

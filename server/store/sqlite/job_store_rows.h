@@ -4,6 +4,7 @@
 
 #include "api/answer/event.h"
 #include "server/store/job_store.h"
+#include "server/store/refusals.h"
 #include "server/store/sqlite/job_store_sqlite.h"
 
 namespace translucube::server::rows {

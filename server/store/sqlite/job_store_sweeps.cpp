@@ -29,8 +29,7 @@ StoredSweep sweep_of(const Statement& row) {
 
 }  // namespace
 
-std::variant<SubmittedSweep, IdempotencyMismatch, QueueFull> JobStore::submit(
-    const NewSweep& sweep) {
+api::Result<SubmittedSweep> JobStore::submit(const NewSweep& sweep) {
   const Lock lock(writer_->mutex);
   Transaction transaction(*writer_);
   const std::int64_t now = options_.clock();
@@ -38,7 +37,7 @@ std::variant<SubmittedSweep, IdempotencyMismatch, QueueFull> JobStore::submit(
     Statement same(*writer_, std::string(select_sweep) + "WHERE idempotency_key = ?");
     if (same.bind(*sweep.idempotency_key).step()) {
       StoredSweep known = sweep_of(same);
-      if (known.request != sweep.request) return IdempotencyMismatch{};
+      if (known.request != sweep.request) return idempotency_mismatch();
       return SubmittedSweep{std::move(known), false};
     }
   }
@@ -46,7 +45,7 @@ std::variant<SubmittedSweep, IdempotencyMismatch, QueueFull> JobStore::submit(
   for (const auto& lanes : sweep.images) made.push_back(use_results(lanes, now));
   const auto missing = static_cast<std::size_t>(
       std::ranges::count_if(made, [](const auto& stats) { return !stats; }));
-  if (missing > 0 && !queue_has_room(missing)) return QueueFull{};
+  if (missing > 0 && !queue_has_room(missing)) return queue_full();
   const std::string id = ids_->next(now);
   std::size_t points = 0;
   for (const auto& lanes : sweep.images) points += lanes.size();
