@@ -6,7 +6,6 @@
 #include "api/base/json_reader.h"
 #include "api/request/parse.h"
 #include "api/request/request_reader.h"
-#include "renderer/slab/spectral.h"
 
 namespace translucube::api {
 namespace {
@@ -68,7 +67,8 @@ json incidence(const SlabAppearance::AtIncidence& at) {
           {"transmitted", with_errors(colour(value.transmitted), colour(error.transmitted))}};
 }
 
-void add_estimate(json& object, const char* key, const std::optional<Estimate>& estimate) {
+void add_estimate(json& object, const char* key,
+                  const std::optional<SlabAppearance::Estimate>& estimate) {
   object[key] = estimate ? json(estimate->value) : json(nullptr);
   object["standard_error"][key] = estimate ? json(estimate->standard_error) : json(nullptr);
 }
