@@ -52,17 +52,17 @@ Result<Submission> JobService::submit(std::string_view document,
   job.content = content_key(request, job.request, catalog_);
 
   return guarded<Result<Submission>>([&]() -> Result<Submission> {
-    auto outcome = accepted<Submitted>(store_.submit(job));
+    auto outcome = accepted(store_.submit(job));
     if (auto* problem = std::get_if<Problem>(&outcome)) return std::move(*problem);
-    const auto& submitted = std::get<Submitted>(outcome);
+    const auto& submitted = std::get<Submitted<Job>>(outcome);
     if (submitted.created) {
-      if (submitted.job.cached)
+      if (submitted.stored.cached)
         metrics_.count_cache_hit();
       else
         metrics_.count_cache_miss();
       workers_->wake();
     }
-    return Submission{status_of(submitted.job), submitted.created};
+    return Submission{status_of(submitted.stored), submitted.created};
   });
 }
 
@@ -100,7 +100,8 @@ Result<api::RenderStatus> JobService::cancel(const std::string& id) {
   return guarded<Result<api::RenderStatus>>([&]() -> Result<api::RenderStatus> {
     const std::optional<Job> known = store_.find(id);
     if (!known || known->sweep_image) return no_such_render();
-    const std::optional<Job> job = store_.cancel(id);
+    store_.cancel(id);
+    const std::optional<Job> job = store_.find(id);
     if (!job) return no_such_render();
     if (job->state == api::JobState::canceled) {
       workers_->stop_job(id);

@@ -23,8 +23,8 @@ T guarded(Work&& work) {
 }
 
 /// The refusals of a store's submit, or what was submitted.
-template <typename Submitted, typename Outcome>
-Result<Submitted> accepted(Outcome&& outcome) {
+template <typename Stored>
+Result<Submitted<Stored>> accepted(SubmitOutcome<Stored> outcome) {
   if (std::holds_alternative<IdempotencyMismatch>(outcome))
     return api::Problem{api::ProblemCode::idempotency_mismatch,
                         "This Idempotency-Key came before, with another request.",
@@ -32,7 +32,7 @@ Result<Submitted> accepted(Outcome&& outcome) {
   if (std::holds_alternative<QueueFull>(outcome))
     return api::Problem{
         api::ProblemCode::queue_full, "The queue has no room for this; try again later.", {}};
-  return std::get<Submitted>(std::forward<Outcome>(outcome));
+  return std::get<Submitted<Stored>>(std::move(outcome));
 }
 
 /// The filter of a page, with one more than the page holds, or the problem of its cursor.
