@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "renderer/base/deadline.h"
+#include "renderer/film/film_error.h"
 #include "renderer/scene/scene.h"
 #include "renderer/transport/transport.h"
 
@@ -87,7 +88,7 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
       tile.height = std::min(tile_size, film.height - tile.y0);
       tile.sum.assign(pixel_floats * tile.width * tile.height * film.lanes, 0.0f);
       for (std::uint32_t s = 0; s < pass.count && !stop.stop_requested(); s += samples_at_once)
-        trace_tile(scene, pass.index, s, std::min(samples_at_once, pass.count - s), tile);
+        trace_tile(scene, {pass.index, s, std::min(samples_at_once, pass.count - s)}, tile);
       store(tile, film);
       counters[i] = tile.counters;
     }
@@ -196,7 +197,7 @@ std::string explain_sample(const Scene& scene, int x, int y, std::uint32_t sampl
   tile.width = tile.height = 1;
   tile.sum.assign(pixel_floats * scene.film_lanes(), 0.0f);
   std::string log;
-  trace_tile(scene, pass.index, sample - pass.first_sample, 1, tile, &log);
+  trace_tile(scene, {pass.index, sample - pass.first_sample, 1}, tile, &log);
   Rgb radiance;
   for (std::size_t lane = 0; lane < (scene.spread ? tile.sum.size() : 1); lane += pixel_floats)
     radiance += Rgb{tile.sum[lane], tile.sum[lane + 1], tile.sum[lane + 2]};

@@ -22,17 +22,17 @@ void develop_or_throw(const DevelopOptions& options) {
     }
   }();
   const auto made = api::redevelop(stored.request, {options.absorption, options.absorber}, catalog);
-  if (const auto* problem = std::get_if<api::Problem>(&made)) {
-    if (problem->faults.empty()) throw refusal_of(*problem);
+  if (!made) {
+    if (made.problem().faults.empty()) throw refusal_of(made.problem());
     std::string message;
-    for (const api::Fault& fault : problem->faults) {
+    for (const api::Fault& fault : made.problem().faults) {
       const bool option = fault.pointer.starts_with('?');
       message += (option ? "--" + fault.pointer.substr(1) : fault.pointer) + ": " + fault.detail;
       message += '\n';
     }
     throw Refusal{exit_bad_request, message};
   }
-  const auto& [absorption, request] = std::get<api::Redeveloped>(made);
+  const auto& [absorption, request] = *made;
   write_outputs(outputs,
                 develop_explorable(stored.film, absorption.absorber, absorption.sigma_a_peak,
                                    options.threads),

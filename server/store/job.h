@@ -18,7 +18,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "api/base/job_state.h"
@@ -100,16 +99,12 @@ struct NewSweep {
   std::vector<std::vector<Picture>> images;  ///< the lanes of each
 };
 
-struct IdempotencyMismatch {};
-struct QueueFull {};
 /// `Stored`: Job or StoredSweep.
 template <typename Stored>
 struct Submitted {
   Stored stored;
   bool created = false;  ///< false: the key was used for the same request before
 };
-template <typename Stored>
-using SubmitOutcome = std::variant<Submitted<Stored>, IdempotencyMismatch, QueueFull>;
 
 /// Who is served first: renders that somebody waits for, or what takes long.
 enum class Priority { interactive = 0, batch = 1 };

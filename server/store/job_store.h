@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "api/base/result.h"
 #include "server/base/clock.h"
 #include "server/store/job.h"
 #include "server/store/store_error.h"
@@ -30,9 +31,10 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  // Renders and sweeps. What is all there already has succeeded at once.
-  virtual SubmitOutcome<Job> submit(const NewJob& job) = 0;
-  virtual SubmitOutcome<StoredSweep> submit(const NewSweep& sweep) = 0;
+  // Renders and sweeps. What is all there already has succeeded at once; a submit is refused as
+  // refusals.h says.
+  virtual api::Result<Submitted<Job>> submit(const NewJob& job) = 0;
+  virtual api::Result<Submitted<StoredSweep>> submit(const NewSweep& sweep) = 0;
   virtual std::optional<Job> find(const std::string& id) const = 0;  ///< images of sweeps too
   virtual std::optional<StoredSweep> find_sweep(const std::string& id) const = 0;
   virtual std::vector<Job> list(const JobFilter& filter) const = 0;  ///< renders, newest first

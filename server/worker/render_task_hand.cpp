@@ -56,11 +56,11 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
       return false;
     }
     auto traced = traced_job(job, workshop_.store, workshop_.catalog);
-    if (const auto* problem = std::get_if<api::Problem>(&traced)) {
-      fail(task, *problem);
+    if (!traced) {
+      fail(task, traced.problem());
       return false;
     }
-    hand_.job = std::get<TracedJob>(std::move(traced));
+    hand_.job = *std::move(traced);
     hand_.scene = workshop_.engine.build(api::scene_spec(hand_.job.requests, workshop_.catalog));
     hand_.id = task.job_id;
   }

@@ -22,7 +22,7 @@ inline NewJob a_job(const std::string& request = "{}", std::optional<std::string
 }
 
 inline std::string submit(JobStore& store, const NewJob& job = a_job()) {
-  return std::get<Submitted<Job>>(store.submit(job)).stored.id;
+  return store.submit(job)->stored.id;
 }
 
 /// A sweep whose images have these numbers of lanes.

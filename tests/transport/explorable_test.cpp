@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <numeric>
 
+#include "renderer/film/film_bytes.h"
+#include "renderer/film/film_error.h"
 #include "renderer/optics/material_cube.h"
 #include "tests/support/absorbers.h"
 #include "tests/support/explorable_error.h"

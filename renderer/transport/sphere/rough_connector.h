@@ -1,7 +1,7 @@
 #pragma once
 
 // Scattering vertices under a rough sphere look for light through the boundary
-// (rough_exit_batch.h): each connects to a light of the tile's list by one collision with a
+// (rough_exits_batch.h): each connects to a light of the tile's list by one collision with a
 // microfacet, weighted by the balance heuristic (Veach 1995) against the walk that comes there by
 // itself. What collides more often on its way out looks for light at the collisions.
 

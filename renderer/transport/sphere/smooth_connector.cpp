@@ -5,7 +5,7 @@
 
 namespace translucube {
 
-SphereConnector::SphereConnector(const Scene& scene, Collector& collector, std::uint64_t key)
+SmoothConnector::SmoothConnector(const Scene& scene, Collector& collector, std::uint64_t key)
     : collector_(collector),
       environment_(scene.next_event_estimation ? std::get_if<ImageEnvironment>(&scene.environment)
                                                : nullptr),
@@ -25,7 +25,7 @@ SphereConnector::SphereConnector(const Scene& scene, Collector& collector, std::
   for (std::size_t i = 0; i < LightStrata::size; ++i) strata_.set(i, lights_[i].direction);
 }
 
-float SphereConnector::carried_share(const Lane& lane) const {
+float SmoothConnector::carried_share(const Lane& lane) const {
   const Rgb clear = std::visit(
       [&](const auto& which) {
         return which.apply({1, 1, 1}, 1 / medium_.sigma_s);
@@ -35,7 +35,7 @@ float SphereConnector::carried_share(const Lane& lane) const {
   return 1 / (1 + 4 * std::sqrt(absorbed));
 }
 
-void SphereConnector::start(Path& path) {
+void SmoothConnector::start(Path& path) {
   if (!active()) return;
   const double rho = length(path.p);
   const Vec3 axis = rho > 0 ? path.p * (1 / rho) : Vec3{0, 0, 1};
@@ -44,11 +44,11 @@ void SphereConnector::start(Path& path) {
   for (Rgb& order : walks_.back().expected) order = order * std::numbers::inv_pi_v<float>;
 }
 
-bool SphereConnector::reaches_far(const SphereExits& exits) const {
+bool SmoothConnector::reaches_far(const SmoothExits& exits) const {
   return medium_.sigma_s * exits.shortest_far() < longest_way;
 }
 
-void SphereConnector::connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths) {
+void SmoothConnector::connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths) {
   collector_.counters().connections += vertices.size;
   // The shortest of all ways out on the far branch begins at the radius 1 / ior.
   const bool far = medium_.sigma_s * std::sqrt(1 - 1 / (ior_ * ior_)) < longest_way;
@@ -61,7 +61,7 @@ void SphereConnector::connect(const SphereWalk::Vertices& vertices, std::span<co
     const Vec3 p{vertices.p_x[i], vertices.p_y[i], vertices.p_z[i]};
     collector_.note("connect", p, {vertices.d_x[i], vertices.d_y[i], vertices.d_z[i]},
                     path.length + vertices.length[i], path.weight);
-    ExitBatch& near = near_.batch;
+    SmoothExitBatch& near = near_.batch;
     if (near_alone()) {
       const Vec3 axis = walks_[path.walk].axis;
       near.axis_x[near.size] = static_cast<float>(axis.x);
@@ -74,14 +74,14 @@ void SphereConnector::connect(const SphereWalk::Vertices& vertices, std::span<co
     } else {
       push(near_, vertices, i, path, weight, drawn, light.direction, chance * light.value.pdf);
     }
-    if (near.size == ExitBatch::capacity) flush_near();
-    if (!far || !reaches_far(SphereExits(ior_, p, vertices.depth2[i]))) continue;
+    if (near.size == SmoothExitBatch::capacity) flush_near();
+    if (!far || !reaches_far(SmoothExits(ior_, p, vertices.depth2[i]))) continue;
     push(far_, vertices, i, path, weight, drawn, light.direction, chance * light.value.pdf);
-    if (far_.batch.size == ExitBatch::capacity) flush_far();
+    if (far_.batch.size == SmoothExitBatch::capacity) flush_far();
   }
 }
 
-void SphereConnector::push(Queue& queue, const SphereWalk::Vertices& vertices, std::size_t i,
+void SmoothConnector::push(Queue& queue, const SphereWalk::Vertices& vertices, std::size_t i,
                            const Path& path, float weight, std::uint32_t light, Vec3 direction,
                            double pdf) {
   queue.waiting[queue.batch.size] = {path.length + vertices.length[i], weight, path.pixel,
@@ -90,10 +90,10 @@ void SphereConnector::push(Queue& queue, const SphereWalk::Vertices& vertices, s
                    {vertices.d_x[i], vertices.d_y[i], vertices.d_z[i]}, direction, pdf);
 }
 
-double SphereConnector::pdf(const Path& path) const {
+double SmoothConnector::pdf(const Path& path) const {
   const Path::Vertex& from = path.vertex;
   if (from.phase == 0) return 0;
-  const SphereExits exits(ior_, from.p, from.depth2);
+  const SmoothExits exits(ior_, from.p, from.depth2);
   const bool far = exits.is_far(path.d);
   if (far && !reaches_far(exits)) return 0;
   if (!far && near_alone()) return Path::found_by_connecting;
@@ -101,7 +101,7 @@ double SphereConnector::pdf(const Path& path) const {
          walk_medium().chance(from.depth2);
 }
 
-void SphereConnector::flush_near() {
+void SmoothConnector::flush_near() {
   if (near_alone())
     collect_near(near_);
   else
@@ -109,14 +109,14 @@ void SphereConnector::flush_near() {
   near_.batch.size = 0;
 }
 
-void SphereConnector::flush_far() {
+void SmoothConnector::flush_far() {
   find_minima(exit_medium(), far_.batch);
   for (const ExitBranch branch : far_branches) collect_balanced(far_, branch);
   far_.batch.size = 0;
 }
 
-void SphereConnector::collect_balanced(Queue& queue, ExitBranch branch) {
-  ExitBatch& batch = queue.batch;
+void SmoothConnector::collect_balanced(Queue& queue, ExitBranch branch) {
+  SmoothExitBatch& batch = queue.batch;
   find_exits(exit_medium(), branch, Division::balanced, batch);
   for (std::size_t i = 0; i < batch.size; ++i) {
     const Waiting& from = queue.waiting[i];
@@ -127,8 +127,7 @@ void SphereConnector::collect_balanced(Queue& queue, ExitBranch branch) {
     if (!(share > 0)) {  // not found, or not finite: sought in double precision
       const auto exit = batch.exits(i, ior_).towards(light.direction, branch);
       if (!exit) continue;
-      share = translucube::share(medium_, ior_, *exit, batch.in(i), batch.light_pdf[i],
-                                 Division::balanced);
+      share = share_of(medium_, ior_, *exit, batch.in(i), batch.light_pdf[i], Division::balanced);
       distance = exit->distance;
       normal = batch.vertex(i) + distance * exit->d;
     }
@@ -138,8 +137,8 @@ void SphereConnector::collect_balanced(Queue& queue, ExitBranch branch) {
   }
 }
 
-void SphereConnector::collect_near(Queue& queue) {
-  ExitBatch& batch = queue.batch;
+void SmoothConnector::collect_near(Queue& queue) {
+  SmoothExitBatch& batch = queue.batch;
   choose_lights(exit_medium(), strata_, rng_.bits() & (LightStrata::positions - 1), batch);
   find_exits(exit_medium(), ExitBranch::near, Division::connected, batch);
   draw_exits(exit_medium(), batch);
@@ -161,8 +160,7 @@ void SphereConnector::collect_near(Queue& queue) {
       const Vec3 w{batch.light_x[i], batch.light_y[i], batch.light_z[i]};
       const auto exit = batch.exits(i, ior_).towards(w, ExitBranch::near);
       if (!exit) continue;
-      share = translucube::share(medium_, ior_, *exit, batch.in(i), batch.light_pdf[i],
-                                 Division::connected);
+      share = share_of(medium_, ior_, *exit, batch.in(i), batch.light_pdf[i], Division::connected);
       distance = exit->distance;
     }
     collector_.collect(

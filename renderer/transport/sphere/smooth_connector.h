@@ -34,10 +34,10 @@ struct NoConnector {
   void flush() {}
 };
 
-class SphereConnector {
+class SmoothConnector {
  public:
   /// The scene: a smooth sphere with scatterers inside. `key` seeds the choice of lights.
-  SphereConnector(const Scene& scene, Collector& collector, std::uint64_t key);
+  SmoothConnector(const Scene& scene, Collector& collector, std::uint64_t key);
 
   /// Whether there is anything to look for: light that differs between directions.
   bool active() const { return environment_ != nullptr; }
@@ -89,8 +89,8 @@ class SphereConnector {
     std::uint32_t pixel, walk, light;
   };
   struct Queue {
-    ExitBatch batch;
-    std::array<Waiting, ExitBatch::capacity> waiting;
+    SmoothExitBatch batch;
+    std::array<Waiting, SmoothExitBatch::capacity> waiting;
   };
 
   /// The share of the expected light that the walk carries to where it leaves near by, by relMSE on
@@ -98,8 +98,8 @@ class SphereConnector {
   /// more of the light. Each lane has its own; which paths are traced does not depend on it.
   float carried_share(const Lane& lane) const;
   static float legendre2(float c) { return 1.5f * c * c - 0.5f; }
-  bool reaches_far(const SphereExits& exits) const;
-  ExitMedium exit_medium() const {
+  bool reaches_far(const SmoothExits& exits) const;
+  SmoothExitMedium exit_medium() const {
     return {static_cast<float>(ior_), static_cast<float>(medium_.sigma_s),
             static_cast<float>(medium_.g)};
   }

@@ -26,7 +26,7 @@ inline constexpr std::array far_branches{ExitBranch::far_falling, ExitBranch::fa
                                          ExitBranch::far_round};
 
 /// One way out.
-struct SphereExit {
+struct SmoothExit {
   Vec3 d;           ///< inside, from the vertex
   double distance;  ///< to the boundary
   double cos_i;     ///< at the boundary, inside
@@ -34,14 +34,14 @@ struct SphereExit {
 };
 
 /// The ways out from one point.
-class SphereExits {
+class SmoothExits {
  public:
   /// `ior` >= 1; p inside the unit sphere, depth2 = 1 - |p|^2.
-  SphereExits(double ior, Vec3 p, double depth2);
-  SphereExits(double ior, Vec3 p) : SphereExits(ior, p, 1 - length_squared(p)) {}
+  SmoothExits(double ior, Vec3 p, double depth2);
+  SmoothExits(double ior, Vec3 p) : SmoothExits(ior, p, 1 - length_squared(p)) {}
 
   /// The way out towards w (unit) on a branch, if there is one.
-  std::optional<SphereExit> towards(Vec3 w, ExitBranch branch) const;
+  std::optional<SmoothExit> towards(Vec3 w, ExitBranch branch) const;
 
   /// Length of the shortest way out on the far branch.
   double shortest_far() const {
@@ -96,7 +96,7 @@ class SphereExits {
     Vec3 across;   ///< towards it, perpendicular to up
   };
   Wanted wanted(Vec3 w) const;
-  SphereExit exit_at(double x, bool far, Vec3 across) const;
+  SmoothExit exit_at(double x, bool far, Vec3 across) const;
 
   static constexpr double x_max = std::numbers::pi / 2;
   double ior_, rho_, depth2_;
@@ -104,14 +104,14 @@ class SphereExits {
   Vec3 up_;
 };
 
-inline SphereExits::SphereExits(double ior, Vec3 p, double depth2)
+inline SmoothExits::SmoothExits(double ior, Vec3 p, double depth2)
     : ior_(ior), rho_(std::sqrt(std::fmax(0.0, 1 - depth2))), depth2_(depth2) {
   const double norm = length(p);
   up_ = norm > 1e-12 ? p * (1 / norm) : Vec3{0, 0, 1};
   by_t_ = ior_ * rho_ > 1;
 }
 
-inline double SphereExits::solve(double target, bool far, double low, double high) const {
+inline double SmoothExits::solve(double target, bool far, double low, double high) const {
   double f_low = psi(low, far) - target, f_high = psi(high, far) - target;
   double x = low - f_low * (high - low) / (f_high - f_low);
   for (int i = 0; i < 40; ++i) {
@@ -128,7 +128,7 @@ inline double SphereExits::solve(double target, bool far, double low, double hig
   return x;
 }
 
-inline double SphereExits::far_minimum() const {
+inline double SmoothExits::far_minimum() const {
   double low = 0, high = x_max;
   if (psi_slope(low, true) >= 0) return low;
   if (psi_slope(high, true) <= 0) return high;
@@ -139,7 +139,7 @@ inline double SphereExits::far_minimum() const {
   return 0.5 * (low + high);
 }
 
-inline double SphereExits::jacobian(Vec3 d) const {
+inline double SmoothExits::jacobian(Vec3 d) const {
   const double cosine = dot(d, up_);
   const double sine = length(cross(d, up_));
   const double sin_i = rho_ * sine, sin_t = ior_ * sin_i;
@@ -157,17 +157,17 @@ inline double SphereExits::jacobian(Vec3 d) const {
   return across / std::fmax(std::fabs(slope), 1e-14);
 }
 
-inline SphereExits::Wanted SphereExits::wanted(Vec3 w) const {
+inline SmoothExits::Wanted SmoothExits::wanted(Vec3 w) const {
   const double cosine = dot(w, up_);
   const Vec3 across = w - cosine * up_;
   const double sine = length(across);
   return {std::atan2(sine, cosine), sine > 0 ? across * (1 / sine) : Frame(up_).x};
 }
 
-inline SphereExit SphereExits::exit_at(double x, bool far, Vec3 across) const {
+inline SmoothExit SmoothExits::exit_at(double x, bool far, Vec3 across) const {
   const Angles a = angles(x);
   const double cos_beta = std::cos(a.beta) * (far ? -1 : 1);
-  SphereExit exit;
+  SmoothExit exit;
   exit.d = cos_beta * up_ + std::sin(a.beta) * across;
   exit.cos_i = std::cos(a.i);
   exit.distance = far ? exit.cos_i - rho_ * cos_beta : depth2_ / (exit.cos_i + rho_ * cos_beta);
@@ -175,7 +175,7 @@ inline SphereExit SphereExits::exit_at(double x, bool far, Vec3 across) const {
   return exit;
 }
 
-inline std::optional<SphereExit> SphereExits::towards(Vec3 w, ExitBranch branch) const {
+inline std::optional<SmoothExit> SmoothExits::towards(Vec3 w, ExitBranch branch) const {
   const Wanted to = wanted(w);
   if (branch == ExitBranch::near) {
     if (to.angle >= psi(x_max, false)) return {};

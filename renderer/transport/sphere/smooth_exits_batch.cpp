@@ -25,8 +25,10 @@ using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
 HWY_INLINE V set(float value) { return hn::Set(D(), value); }
-HWY_INLINE V load(const ExitBatch::Floats& from, std::size_t i) { return hn::LoadU(D(), &from[i]); }
-HWY_INLINE void store(V value, ExitBatch::Floats& to, std::size_t i) {
+HWY_INLINE V load(const SmoothExitBatch::Floats& from, std::size_t i) {
+  return hn::LoadU(D(), &from[i]);
+}
+HWY_INLINE void store(V value, SmoothExitBatch::Floats& to, std::size_t i) {
   hn::StoreU(value, D(), &to[i]);
 }
 
@@ -156,8 +158,8 @@ HWY_INLINE V transmittance(V n, V cos_i, V cos_t) {
   return hn::NegMulAdd(set(0.5f), hn::MulAdd(rs, rs, hn::Mul(rp, rp)), set(1));
 }
 
-void ChooseLights(const ExitMedium& medium, const LightStrata& lights, std::size_t position,
-                  ExitBatch& batch) {
+void ChooseLights(const SmoothExitMedium& medium, const LightStrata& lights, std::size_t position,
+                  SmoothExitBatch& batch) {
   constexpr std::size_t candidates = LightStrata::candidates, positions = LightStrata::positions,
                         stride = positions + LightStrata::padding;
   const V one = set(1), n = set(medium.ior);
@@ -238,7 +240,7 @@ void ChooseLights(const ExitMedium& medium, const LightStrata& lights, std::size
   }
 }
 
-void DrawExits(const ExitMedium& medium, ExitBatch& batch) {
+void DrawExits(const SmoothExitMedium& medium, SmoothExitBatch& batch) {
   const V one = set(1), n = set(medium.ior), sigma_s = set(medium.sigma_s);
   for (std::size_t lane = 0; lane < batch.size; lane += hn::Lanes(D())) {
     const V depth2 = load(batch.depth2, lane);
@@ -268,7 +270,7 @@ struct Wanted {
 
   /// `get` reads a lane of each of a batch's arrays.
   template <class Get>
-  HWY_INLINE Wanted(V n, ExitBranch branch, const ExitBatch& batch, Get&& get)
+  HWY_INLINE Wanted(V n, ExitBranch branch, const SmoothExitBatch& batch, Get&& get)
       : plane(
             plane_of(n, hn::Sqrt(hn::Sub(set(1), get(batch.depth2))), branch != ExitBranch::near)),
         ux(get(batch.up_x)),
@@ -317,25 +319,26 @@ struct Wanted {
   }
 };
 
-void FindMinima(const ExitMedium& medium, ExitBatch& batch) {
+void FindMinima(const SmoothExitMedium& medium, SmoothExitBatch& batch) {
   for (std::size_t lane = 0; lane < batch.size; lane += hn::Lanes(D())) {
     const V rho = hn::Sqrt(hn::Sub(set(1), load(batch.depth2, lane)));
     store(far_minimum(plane_of(set(medium.ior), rho, true)), batch.minimum, lane);
   }
 }
 
-void FindExits(const ExitMedium& medium, ExitBranch branch, Division division, ExitBatch& batch) {
+void FindExits(const SmoothExitMedium& medium, ExitBranch branch, Division division,
+               SmoothExitBatch& batch) {
   const V one = set(1), n = set(medium.ior), sigma_s = set(medium.sigma_s), g = set(medium.g);
   const bool far = branch != ExitBranch::near;
   const hn::RebindToSigned<D> di;
   constexpr float quarter_inv_pi = 0.0795774715f;
 
   // Few have a way out on a far branch: they are solved side by side.
-  std::array<std::int32_t, ExitBatch::capacity + hn::MaxLanes(D())> found;
+  std::array<std::int32_t, SmoothExitBatch::capacity + hn::MaxLanes(D())> found;
   std::size_t count = 0;
   for (std::size_t lane = 0; lane < batch.size; lane += hn::Lanes(D())) {
     const Wanted wanted(n, branch, batch,
-                        [&](const ExitBatch::Floats& from) { return load(from, lane); });
+                        [&](const SmoothExitBatch::Floats& from) { return load(from, lane); });
     const M reachable = hn::And(wanted.reachable(branch, far ? load(batch.minimum, lane) : one),
                                 hn::FirstN(D(), batch.size - lane));
     hn::StoreU(
@@ -349,10 +352,10 @@ void FindExits(const ExitMedium& medium, ExitBranch branch, Division division, E
 
   for (std::size_t first = 0; first < count; first += hn::Lanes(D())) {
     const auto index = hn::LoadU(di, &found[first]);
-    const auto get = [&](const ExitBatch::Floats& from) {
+    const auto get = [&](const SmoothExitBatch::Floats& from) {
       return hn::GatherIndex(D(), from.data(), index);
     };
-    const auto put = [&](V value, ExitBatch::Floats& to) {
+    const auto put = [&](V value, SmoothExitBatch::Floats& to) {
       hn::ScatterIndex(value, D(), to.data(), index);
     };
     const Wanted w(n, branch, batch, get);
@@ -419,28 +422,29 @@ void LightStrata::set(std::size_t i, Vec3 direction) {
   }
 }
 
-double share(const Medium& medium, double ior, const SphereExit& exit, Vec3 before,
-             double light_pdf, Division division) {
+double share_of(const Medium& medium, double ior, const SmoothExit& exit, Vec3 before,
+                double light_pdf, Division division) {
   const double pdf =
       medium.phase(dot(before, exit.d)) * std::exp(-medium.sigma_s * exit.distance) * exit.jacobian;
   return (1 - fresnel(exit.cos_i, 1 / ior)) * pdf /
          (light_pdf + (division == Division::balanced ? pdf : 0));
 }
 
-void choose_lights(const ExitMedium& medium, const LightStrata& lights, std::size_t position,
-                   ExitBatch& batch) {
+void choose_lights(const SmoothExitMedium& medium, const LightStrata& lights, std::size_t position,
+                   SmoothExitBatch& batch) {
   HWY_DYNAMIC_DISPATCH(ChooseLights)(medium, lights, position, batch);
 }
 
-void find_minima(const ExitMedium& medium, ExitBatch& batch) {
+void find_minima(const SmoothExitMedium& medium, SmoothExitBatch& batch) {
   HWY_DYNAMIC_DISPATCH(FindMinima)(medium, batch);
 }
 
-void find_exits(const ExitMedium& medium, ExitBranch branch, Division division, ExitBatch& batch) {
+void find_exits(const SmoothExitMedium& medium, ExitBranch branch, Division division,
+                SmoothExitBatch& batch) {
   HWY_DYNAMIC_DISPATCH(FindExits)(medium, branch, division, batch);
 }
 
-void draw_exits(const ExitMedium& medium, ExitBatch& batch) {
+void draw_exits(const SmoothExitMedium& medium, SmoothExitBatch& batch) {
   HWY_DYNAMIC_DISPATCH(DrawExits)(medium, batch);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // Next-event estimation through the smooth boundary of the unit sphere, many vertices at a time:
-// the ways out of sphere_exit.h in SIMD (exit_batch.cpp), in single precision.
+// the ways out of smooth_exits.h in SIMD (smooth_exits_batch.cpp), in single precision.
 
 #include <array>
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace translucube {
 
 /// What is the same for all vertices of a body.
-struct ExitMedium {
+struct SmoothExitMedium {
   float ior = 1.5f;   ///< >= 1
   float sigma_s = 0;  ///< [1 / radius]
   float g = 0;
@@ -34,7 +34,7 @@ struct LightStrata {
 };
 
 /// Scattering vertices, each with a direction towards the light (structure of arrays).
-struct ExitBatch {
+struct SmoothExitBatch {
   static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
   /// So that equal places of two arrays do not fall into the same set of a cache.
   static constexpr std::size_t padding = 16;
@@ -51,7 +51,7 @@ struct ExitBatch {
   std::array<std::int32_t, capacity> light{};
   Floats minimum;  ///< of find_minima(): where the far branches turn
   // Out: share of the vertex's light that leaves towards the light, over the light's density (0:
-  // there is no way; negative: not found, sphere_exit.h finds it); length inside; where it leaves
+  // there is no way; negative: not found, smooth_exits.h finds it); length inside; where it leaves
   // (the normal).
   Floats share, distance, normal_x, normal_y, normal_z;
   // Out, of draw_exits(): share of the vertex's light that leaves on the near branch in a direction
@@ -63,8 +63,8 @@ struct ExitBatch {
   }
   Vec3 in(std::size_t i) const { return {in_x[i], in_y[i], in_z[i]}; }
   /// The ways out from a vertex, one by one.
-  SphereExits exits(std::size_t i, double ior) const {
-    return SphereExits(ior, {up_x[i], up_y[i], up_z[i]}, depth2[i]);
+  SmoothExits exits(std::size_t i, double ior) const {
+    return SmoothExits(ior, {up_x[i], up_y[i], up_z[i]}, depth2[i]);
   }
 
   /// `depth_squared`: 1 - |p|^2. Room for one more is the caller's care.
@@ -92,24 +92,25 @@ enum class Division {
 };
 
 /// The share of one way out, in double precision.
-double share(const Medium& medium, double ior, const SphereExit& exit, Vec3 before,
-             double light_pdf, Division division);
+double share_of(const Medium& medium, double ior, const SmoothExit& exit, Vec3 before,
+                double light_pdf, Division division);
 
 /// Chooses a light of the list for each vertex and sets its direction: one out of `candidates`, in
 /// proportion to about what leaves towards it on the near branch (resampled importance sampling:
 /// Talbot, Cline, Egbert 2005). Each candidate is turned about the vertex's axis by another angle,
 /// from a start drawn by `turn`. Multiplies light_pdf by the density of the choice.
-void choose_lights(const ExitMedium& medium, const LightStrata& lights, std::size_t position,
-                   ExitBatch& batch);
+void choose_lights(const SmoothExitMedium& medium, const LightStrata& lights, std::size_t position,
+                   SmoothExitBatch& batch);
 
 /// Fills `minimum`, which the far branches ask for.
-void find_minima(const ExitMedium& medium, ExitBatch& batch);
+void find_minima(const SmoothExitMedium& medium, SmoothExitBatch& batch);
 
 /// Fills the batch's results for the way out on one branch.
-void find_exits(const ExitMedium& medium, ExitBranch branch, Division division, ExitBatch& batch);
+void find_exits(const SmoothExitMedium& medium, ExitBranch branch, Division division,
+                SmoothExitBatch& batch);
 
 /// A way out on the near branch for each vertex of an isotropic medium, drawn uniformly from the
 /// directions that get out.
-void draw_exits(const ExitMedium& medium, ExitBatch& batch);
+void draw_exits(const SmoothExitMedium& medium, SmoothExitBatch& batch);
 
 }  // namespace translucube

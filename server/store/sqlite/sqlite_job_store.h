@@ -22,8 +22,8 @@ class SqliteJobStore final : public JobStore {
   SqliteJobStore(const std::string& file, StoreOptions options);
 
   // submit.cpp
-  SubmitOutcome<Job> submit(const NewJob& job) override;
-  SubmitOutcome<StoredSweep> submit(const NewSweep& sweep) override;
+  api::Result<Submitted<Job>> submit(const NewJob& job) override;
+  api::Result<Submitted<StoredSweep>> submit(const NewSweep& sweep) override;
 
   // sqlite_job_store.cpp
   std::optional<Job> find(const std::string& id) const override;

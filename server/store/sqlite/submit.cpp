@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "server/store/refusals.h"
 #include "server/store/sqlite/rows.h"
 #include "server/store/sqlite/sqlite_job_store.h"
 
@@ -14,11 +15,12 @@ namespace {
 
 /// What the key was used for before, if it was.
 template <typename Stored, typename Asked>
-std::optional<SubmitOutcome<Stored>> submitted_before(sql::Connection& writer, const Asked& asked) {
+std::optional<api::Result<Submitted<Stored>>> submitted_before(sql::Connection& writer,
+                                                               const Asked& asked) {
   if (!asked.idempotency_key) return std::nullopt;
   auto known = rows::find<Stored>(writer, "idempotency_key = ?", *asked.idempotency_key);
   if (!known) return std::nullopt;
-  if (known->request != asked.request) return IdempotencyMismatch{};
+  if (known->request != asked.request) return idempotency_mismatch();
   return Submitted<Stored>{std::move(*known), false};
 }
 
@@ -65,13 +67,13 @@ bool SqliteJobStore::queue_has_room(std::size_t jobs) {
   return static_cast<std::uint64_t>(open.integer(0)) + jobs <= options_.most_queued;
 }
 
-SubmitOutcome<Job> SqliteJobStore::submit(const NewJob& job) {
+api::Result<Submitted<Job>> SqliteJobStore::submit(const NewJob& job) {
   Transaction transaction(writer_);
   if (auto known = submitted_before<Job>(writer_, job)) return std::move(*known);
   const std::int64_t now = options_.clock();
   const std::vector<Picture> lanes{{0, job.content}};
   const std::optional<std::string> stats = use_results(lanes, now);
-  if (!stats && !queue_has_room(1)) return QueueFull{};
+  if (!stats && !queue_has_room(1)) return queue_full();
   const std::string id =
       insert_job({job.request, job.material, job.idempotency_key, now, job.total_samples, stats,
                   std::nullopt, lanes, job.first_pass});
@@ -81,7 +83,7 @@ SubmitOutcome<Job> SqliteJobStore::submit(const NewJob& job) {
   return submitted;
 }
 
-SubmitOutcome<StoredSweep> SqliteJobStore::submit(const NewSweep& sweep) {
+api::Result<Submitted<StoredSweep>> SqliteJobStore::submit(const NewSweep& sweep) {
   Transaction transaction(writer_);
   if (auto known = submitted_before<StoredSweep>(writer_, sweep)) return std::move(*known);
   const std::int64_t now = options_.clock();
@@ -92,7 +94,7 @@ SubmitOutcome<StoredSweep> SqliteJobStore::submit(const NewSweep& sweep) {
     missing += made.back() ? 0 : 1;
     points += lanes.size();
   }
-  if (missing > 0 && !queue_has_room(missing)) return QueueFull{};
+  if (missing > 0 && !queue_has_room(missing)) return queue_full();
   const std::string id = ids_->next(now);
   Statement(writer_,
             "INSERT INTO sweeps(id, state, request, idempotency_key, created_ms, points, images) "

@@ -46,8 +46,8 @@ const std::vector<Part>& parts() {
       {"program start", {"_dl_", "do_lookup", "strcmp"}},
       {"environment", {"ImageEnvironment", "EnvironmentBatch", "Coordinates", "LightList"}},
       {"connections",
-       {"SphereConnector", "FindExits", "ExitBatch", "SphereExit", "ChooseLights", "DrawExits",
-        "Connect", "Densities"}},
+       {"SmoothConnector", "FindExits", "SmoothExitBatch", "SmoothExit", "ChooseLights",
+        "DrawExits", "Connect", "Densities"}},
       {"microfacets", {"Micro", "microsurface", "Ggx", "Collide", "::Start"}},
       {"walk", {"large_step", "cross_ball", "Walk", "Medium", "Sphere::"}},
       {"collect", {"Collector", "Contribution", "merge", "Lane"}},
@@ -262,10 +262,10 @@ Table one_by_one(Run& run) {
                   while (microsurface->under_way() > 0) microsurface->collide(interface, lights, 8);
                   sink = microsurface->inward_weight(7);
                 });
-  auto exits = std::make_unique<ExitBatch>();
-  measure_batch("way out of a smooth connection (SIMD)", ExitBatch::capacity, [&] {
+  auto exits = std::make_unique<SmoothExitBatch>();
+  measure_batch("way out of a smooth connection (SIMD)", SmoothExitBatch::capacity, [&] {
     exits->size = 0;
-    while (exits->size < ExitBatch::capacity)
+    while (exits->size < SmoothExitBatch::capacity)
       exits->push(0.9 * sample_isotropic(rng), 0.19, sample_isotropic(rng), sample_isotropic(rng),
                   0.1);
     find_exits({1.5f, 10.0f, 0.0f}, ExitBranch::near, Division::balanced, *exits);

@@ -30,20 +30,20 @@ std::optional<Vec3> leaves_along(double ior, Vec3 p, Vec3 d) {
 constexpr std::array all_branches{ExitBranch::near, ExitBranch::far_falling, ExitBranch::far_rising,
                                   ExitBranch::far_round};
 
-std::vector<SphereExit> all_exits(double ior, Vec3 p, Vec3 w) {
-  std::vector<SphereExit> found;
-  const SphereExits exits(ior, p);
+std::vector<SmoothExit> all_exits(double ior, Vec3 p, Vec3 w) {
+  std::vector<SmoothExit> found;
+  const SmoothExits exits(ior, p);
   for (const ExitBranch branch : all_branches)
     if (const auto exit = exits.towards(w, branch)) found.push_back(*exit);
   return found;
 }
 
-TEST(SphereExits, EveryWayOutLeadsWhereItShould) {
+TEST(SmoothExits, EveryWayOutLeadsWhereItShould) {
   Rng rng(1);
   for (int i = 0; i < 20'000; ++i) {
     const double ior = 1 + 1.5 * rng.uniform(), rho = std::cbrt(rng.uniform());
     const Vec3 p = rho * random_direction(rng), w = random_direction(rng);
-    for (const SphereExit& exit : all_exits(ior, p, w)) {
+    for (const SmoothExit& exit : all_exits(ior, p, w)) {
       const auto out = leaves_along(ior, p, exit.d);
       ASSERT_TRUE(out) << "ior " << ior << " rho " << rho;
       EXPECT_LT(length(*out - w), 1e-5) << "ior " << ior << " rho " << rho;
@@ -52,7 +52,7 @@ TEST(SphereExits, EveryWayOutLeadsWhereItShould) {
   }
 }
 
-TEST(SphereExits, NoWayOutIsMissed) {
+TEST(SmoothExits, NoWayOutIsMissed) {
   // A ray in any direction that gets out must be among the ways towards where it goes.
   Rng rng(2);
   int missed = 0, sought = 0;
@@ -63,19 +63,19 @@ TEST(SphereExits, NoWayOutIsMissed) {
     if (!out) continue;
     ++sought;
     bool found = false;
-    for (const SphereExit& exit : all_exits(ior, p, *out)) found |= length(exit.d - d) < 1e-4;
+    for (const SmoothExit& exit : all_exits(ior, p, *out)) found |= length(exit.d - d) < 1e-4;
     missed += !found;
   }
   // Next to a caustic two ways melt into one, and rounding decides.
   EXPECT_LT(missed, sought / 2000);
 }
 
-TEST(SphereExits, TheJacobianIsTheRatioOfSolidAngles) {
+TEST(SmoothExits, TheJacobianIsTheRatioOfSolidAngles) {
   Rng rng(3);
   for (int i = 0; i < 2000; ++i) {
     const double ior = 1.1 + rng.uniform(), rho = std::cbrt(rng.uniform());
     const Vec3 p = rho * random_direction(rng), d = random_direction(rng);
-    const SphereExits exits(ior, p);
+    const SmoothExits exits(ior, p);
     const Frame frame(d);
     constexpr double step = 1e-6;
     const auto out = leaves_along(ior, p, d);
@@ -88,16 +88,16 @@ TEST(SphereExits, TheJacobianIsTheRatioOfSolidAngles) {
   }
 }
 
-TEST(SphereExits, ManyAtATimeAreTheSameAsOne) {
+TEST(SmoothExits, ManyAtATimeAreTheSameAsOne) {
   Rng rng(4);
   for (const ExitBranch branch : all_branches)
     for (const double ior : {1.0, 1.01, 1.33, 1.5, 2.5, 4.0})
       for (const double g : {0.0, 0.7}) {
         const bool near = branch == ExitBranch::near;
         const Medium medium{near ? 5.0 : 0.5, g};
-        auto batch = std::make_unique<ExitBatch>();
+        auto batch = std::make_unique<SmoothExitBatch>();
         std::vector<Vec3> places, before, lights;
-        for (std::size_t i = 0; i < ExitBatch::capacity; ++i) {
+        for (std::size_t i = 0; i < SmoothExitBatch::capacity; ++i) {
           // Down to a millionth of the radius below the surface; the far side matters deep inside.
           const double depth =
               near ? std::pow(10, -6 * rng.uniform()) : 0.01 + 0.99 * rng.uniform();
@@ -110,14 +110,14 @@ TEST(SphereExits, ManyAtATimeAreTheSameAsOne) {
         find_exits({float(ior), float(medium.sigma_s), float(g)}, branch, Division::balanced,
                    *batch);
         int not_found = 0, differ = 0;
-        for (std::size_t i = 0; i < ExitBatch::capacity; ++i) {
+        for (std::size_t i = 0; i < SmoothExitBatch::capacity; ++i) {
           if (batch->share[i] < 0) {
             ++not_found;
             continue;
           }
           double expected = 0, distance = 0;
-          if (const auto exit = SphereExits(ior, places[i]).towards(lights[i], branch)) {
-            expected = share(medium, ior, *exit, before[i], 0.1, Division::balanced);
+          if (const auto exit = SmoothExits(ior, places[i]).towards(lights[i], branch)) {
+            expected = share_of(medium, ior, *exit, before[i], 0.1, Division::balanced);
             distance = exit->distance;
           }
           const bool same =
@@ -137,10 +137,10 @@ void fill(LightStrata& lights, Rng& rng) {
 }
 
 /// A batch of the same vertex, on a walk that started elsewhere.
-void fill(ExitBatch& batch, double rho, Rng& rng) {
+void fill(SmoothExitBatch& batch, double rho, Rng& rng) {
   batch.size = 0;
   const Vec3 p = rho * random_direction(rng), axis = random_direction(rng);
-  for (std::size_t i = 0; i < ExitBatch::capacity; ++i) {
+  for (std::size_t i = 0; i < SmoothExitBatch::capacity; ++i) {
     batch.axis_x[i] = static_cast<float>(axis.x);
     batch.axis_y[i] = static_cast<float>(axis.y);
     batch.axis_z[i] = static_cast<float>(axis.z);
@@ -163,14 +163,14 @@ struct Mean {
   double standard_error() const { return std::sqrt((squares / n - mean() * mean()) / n); }
 };
 
-TEST(SphereExits, ChosenLightsAndDrawnWaysHaveTheShareAndLengthOfAllThatLeaves) {
+TEST(SmoothExits, ChosenLightsAndDrawnWaysHaveTheShareAndLengthOfAllThatLeaves) {
   Rng rng(6);
-  auto batch = std::make_unique<ExitBatch>();
+  auto batch = std::make_unique<SmoothExitBatch>();
   auto lights = std::make_unique<LightStrata>();
   for (const double ior : {1.0, 1.33, 1.5, 2.5})
     for (const double rho : {0.05, 0.4, 0.67, 0.9, 0.999}) {
       const double sigma_s = rho > 0.8 ? 0.5 / (1 - rho) : 1;
-      const ExitMedium medium{float(ior), float(sigma_s), 0};
+      const SmoothExitMedium medium{float(ior), float(sigma_s), 0};
       // Isotropic light on the near branch, by the midpoint rule in the cosine.
       double share = 0, length = 0;
       constexpr int steps = 200'000;
@@ -215,9 +215,9 @@ TEST(SphereExits, ChosenLightsAndDrawnWaysHaveTheShareAndLengthOfAllThatLeaves) 
     }
 }
 
-TEST(SphereExits, AChosenLightIsOneOfTheListTurnedAboutTheAxis) {
+TEST(SmoothExits, AChosenLightIsOneOfTheListTurnedAboutTheAxis) {
   Rng rng(7);
-  auto batch = std::make_unique<ExitBatch>();
+  auto batch = std::make_unique<SmoothExitBatch>();
   auto lights = std::make_unique<LightStrata>();
   std::vector<Vec3> directions;
   for (std::size_t i = 0; i < LightStrata::size; ++i) {
@@ -239,16 +239,16 @@ TEST(SphereExits, AChosenLightIsOneOfTheListTurnedAboutTheAxis) {
   }
 }
 
-TEST(SphereExits, InstructionSetsDifferByRoundingAlone) {
+TEST(SmoothExits, InstructionSetsDifferByRoundingAlone) {
   Rng rng(5);
-  auto batch = std::make_unique<ExitBatch>();
-  for (std::size_t i = 0; i < ExitBatch::capacity; ++i) {
+  auto batch = std::make_unique<SmoothExitBatch>();
+  for (std::size_t i = 0; i < SmoothExitBatch::capacity; ++i) {
     const double depth = 0.001 + 0.9 * rng.uniform();
     batch->push((1 - depth) * random_direction(rng), depth * (2 - depth), random_direction(rng),
                 random_direction(rng), 0.1);
   }
   for (const ExitBranch branch : all_branches) {
-    std::map<std::string, ExitBatch::Floats> shares;
+    std::map<std::string, SmoothExitBatch::Floats> shares;
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
       hwy::SetSupportedTargetsForTest(target);
       hwy::GetChosenTarget().DeInit();
@@ -258,7 +258,7 @@ TEST(SphereExits, InstructionSetsDifferByRoundingAlone) {
       hwy::SetSupportedTargetsForTest(0);
       hwy::GetChosenTarget().DeInit();
     }
-    const ExitBatch::Floats& first = shares.begin()->second;
+    const SmoothExitBatch::Floats& first = shares.begin()->second;
     for (const auto& [name, share] : shares) {
       int differ = 0;
       for (std::size_t i = 0; i < first.size(); ++i)
@@ -274,24 +274,24 @@ TEST(SphereExits, InstructionSetsDifferByRoundingAlone) {
   }
 }
 
-TEST(SphereExits, InstructionSetsChooseAndDrawTheSame) {
+TEST(SmoothExits, InstructionSetsChooseAndDrawTheSame) {
   Rng rng(8);
   auto lights = std::make_unique<LightStrata>();
   fill(*lights, rng);
-  auto vertices = std::make_unique<ExitBatch>();
+  auto vertices = std::make_unique<SmoothExitBatch>();
   fill(*vertices, 0.9, rng);
-  std::map<std::string, std::unique_ptr<ExitBatch>> results;
+  std::map<std::string, std::unique_ptr<SmoothExitBatch>> results;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().DeInit();
-    auto batch = std::make_unique<ExitBatch>(*vertices);
+    auto batch = std::make_unique<SmoothExitBatch>(*vertices);
     choose_lights({1.5f, 2, 0}, *lights, 120, *batch);
     draw_exits({1.5f, 2, 0}, *batch);
     results[hwy::TargetName(target)] = std::move(batch);
     hwy::SetSupportedTargetsForTest(0);
     hwy::GetChosenTarget().DeInit();
   }
-  const ExitBatch& first = *results.begin()->second;
+  const SmoothExitBatch& first = *results.begin()->second;
   for (const auto& [name, batch] : results) {
     int differ = 0;
     for (std::size_t i = 0; i < first.size; ++i) {
@@ -302,7 +302,7 @@ TEST(SphereExits, InstructionSetsChooseAndDrawTheSame) {
     EXPECT_LE(differ, 2) << name;
   }
   if (results.contains("AVX2") && results.contains("AVX3")) {
-    const ExitBatch &a = *results["AVX2"], &b = *results["AVX3"];
+    const SmoothExitBatch &a = *results["AVX2"], &b = *results["AVX3"];
     EXPECT_EQ(a.light, b.light);
     EXPECT_EQ(a.light_x, b.light_x);
     EXPECT_EQ(a.light_pdf, b.light_pdf);
@@ -319,7 +319,7 @@ ImageEnvironment white_image() {
   return ImageEnvironment(image, 0, 1);
 }
 
-TEST(Connections, OfAWhiteImageKeepTheFurnace) {
+TEST(SmoothConnections, OfAWhiteImageKeepTheFurnace) {
   for (const double sigma_s : {0.2, 30.0})
     for (const double ior : {1.0, 1.5, 2.5}) {
       Scene scene = body(Sphere{}, material(ior, 0, sigma_s));
@@ -333,7 +333,7 @@ TEST(Connections, OfAWhiteImageKeepTheFurnace) {
     }
 }
 
-TEST(Connections, OfForwardAndBackwardScatteringKeepTheFurnace) {
+TEST(SmoothConnections, OfForwardAndBackwardScatteringKeepTheFurnace) {
   for (const double g : {-0.6, 0.8}) {
     Scene scene = body(Sphere{}, material(1.5, 0, 4, g));
     scene.environment = white_image();
@@ -353,7 +353,7 @@ Scene half_lit(double sigma_s, double ior, float sigma_a) {
   return scene;
 }
 
-TEST(Connections, FindWhatTheWalkAloneFinds) {
+TEST(SmoothConnections, FindWhatTheWalkAloneFinds) {
   // A walk between two faces that do not quite touch the sphere's connector: the same body as a
   // rough one of vanishing roughness, which does not connect its vertices.
   for (const double sigma_s : {0.3, 3.0, 20.0}) {
@@ -368,7 +368,7 @@ TEST(Connections, FindWhatTheWalkAloneFinds) {
   }
 }
 
-TEST(Connections, SwitchedOffTheMeanIsTheSame) {
+TEST(SmoothConnections, SwitchedOffTheMeanIsTheSame) {
   for (const double alpha : {0.0, 0.2}) {
     Scene scene = half_lit(3, 1.5, 0.3f);
     if (alpha > 0) scene.interface = RoughInterface{1.5, Ggx{alpha}};
