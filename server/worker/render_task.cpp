@@ -6,13 +6,13 @@
 #include <chrono>
 #include <limits>
 #include <new>
-#include <thread>
 
 #include "api/answer/render_status.h"
 #include "api/request/sweep.h"
 #include "picture/image_io.h"
 #include "renderer/base/deadline.h"
-#include "renderer/film/explorable.h"
+#include "renderer/base/parallel.h"
+#include "renderer/film/explorable_file.h"
 #include "server/pictures/image_artifacts.h"
 #include "server/worker/task_watch.h"
 
@@ -45,10 +45,7 @@ double seconds_since(steady_clock::time_point start) {
 
 }  // namespace
 
-int TaskRunner::threads() const {
-  return workshop_.threads > 0 ? workshop_.threads
-                               : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
+int TaskRunner::threads() const { return thread_count(workshop_.threads); }
 
 std::optional<std::uint32_t> TaskRunner::total_samples() const {
   const auto* target = std::get_if<SampleTarget>(&hand_.job.quality());

@@ -1,6 +1,6 @@
 // Explorable renders against renders with exact lanes of the same paths.
 
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_develop.h"
 
 #include <gtest/gtest.h>
 
