@@ -120,7 +120,8 @@ class TestService {
       : catalog(configured(options)),
         colors(catalog.display_config),
         data(folder),
-        store(data.store_file(), options.store),
+        own_store(open_job_store(data.store_file(), options.store)),
+        store(*own_store),
         artifacts(data.artifacts()),
         service(catalog, colors, store, artifacts, metrics, std::move(engine)) {}
 
@@ -166,7 +167,8 @@ class TestService {
   api::Catalog catalog;
   ColorConfig colors;
   DataFolder data;
-  JobStore store;
+  std::unique_ptr<JobStore> own_store;
+  JobStore& store;
   ArtifactStore artifacts;
   Metrics metrics;
   JobService service;
