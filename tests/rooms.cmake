@@ -26,7 +26,7 @@ set(rooms
   "api/answer: api/base api/request renderer renderer/base renderer/film renderer/optics picture"
   "api:"
 
-  "server/base: api/config"
+  "server/base: api/config picture"
   "server/store: server/base api/base api/request renderer renderer/film"
   "server/store/sqlite: server/base server/store api/answer"
   "server/pictures: server/base server/store api/base api/request api/answer renderer renderer/film picture picture/sheet"

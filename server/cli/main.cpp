@@ -2,6 +2,7 @@
 #include <charconv>
 #include <iostream>
 
+#include "picture/version.h"
 #include "server/cli/appearance.h"
 #include "server/cli/verbs.h"
 
@@ -23,7 +24,7 @@ std::optional<std::pair<int, int>> pixel_of(const std::string& text) {
 
 int main(int argc, char** argv) {
   CLI::App app("Renders translucent materials and serves the pictures.", "translucube");
-  app.set_version_flag("--version", "translucube " TRANSLUCUBE_VERSION);
+  app.set_version_flag("--version", "translucube " + std::string(translucube::project_version()));
   app.require_subcommand(1);
 
   RenderOptions render;

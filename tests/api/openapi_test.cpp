@@ -36,7 +36,6 @@ void visit_references(const json& value, const std::function<void(const std::str
 
 TEST(OpenApi, DescribesEveryCallOfTheService) {
   EXPECT_EQ(document()["openapi"], "3.1.0");
-  EXPECT_EQ(document()["info"]["version"], TRANSLUCUBE_VERSION);
   std::set<std::string> calls;
   for (const auto& [path, item] : document()["paths"].items())
     for (const auto& [method, operation] : item.items())
