@@ -12,7 +12,7 @@ namespace {
 using nlohmann::json;
 
 /// Names of hosts and origins, which compare without case (RFC 6454, 4; RFC 9110, 4.2.3).
-std::vector<std::string> read_names(ObjectReader& object, const char* key, const char* form,
+std::vector<std::string> read_names(FieldReader& object, const char* key, const char* form,
                                     bool (*right)(const std::string&)) {
   std::vector<std::string> names;
   const json* value = object.find(key);
@@ -48,7 +48,7 @@ bool is_origin(const std::string& name) {
 
 ServerConfig read_server(const json& value, const std::string& pointer, ServerConfig server,
                          const std::filesystem::path& folder, Faults& faults) {
-  ObjectReader object(value, pointer, faults);
+  FieldReader object(value, pointer, faults);
   const auto integer = [&](const char* key, std::uint64_t low, std::uint64_t high, int& out) {
     if (const auto number = object.integer(key, low, high)) out = static_cast<int>(*number);
   };

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "api/base/json_reader.h"
-#include "api/request/parse.h"
-#include "api/request/request_reader.h"
+#include "api/request/canonical.h"
+#include "api/request/read_request.h"
 
 namespace translucube::api {
 namespace {
@@ -70,7 +70,7 @@ std::map<std::string, fs::path> named_files(const fs::path& folder,
 NamedAbsorber read_absorber_file(const fs::path& file) {
   auto [value, faults] = read_config(file);
   NamedAbsorber absorber;
-  ObjectReader object(value, "", faults);
+  FieldReader object(value, "", faults);
   absorber.description = object.string("description", Presence::required).value_or("");
   object.string("source", Presence::required);
   if (auto spectrum = read_spectrum(object)) absorber.spectrum = std::move(*spectrum);
@@ -81,7 +81,7 @@ NamedAbsorber read_absorber_file(const fs::path& file) {
 
 Limits read_limits(const json& value, const std::string& pointer, Faults& faults) {
   Limits limits;
-  ObjectReader object(value, pointer, faults);
+  FieldReader object(value, pointer, faults);
   if (const auto bytes = object.integer("body_bytes", 1024, std::uint64_t{1} << 30))
     limits.body_bytes = *bytes;
   if (const auto pixels = object.integer("pixels", 1, std::uint64_t{1} << 32))
@@ -148,14 +148,14 @@ void read_defaults(const json& value, Catalog& catalog, Faults& faults) {
 Catalog load_catalog(const fs::path& service_json) {
   auto [value, faults] = read_config(service_json);
   const fs::path folder = fs::absolute(service_json).parent_path();
-  const auto path = [&](ObjectReader& object, const char* key) {
+  const auto path = [&](FieldReader& object, const char* key) {
     const auto text = object.string(key, Presence::required);
     return text ? (folder / *text).lexically_normal() : fs::path{};
   };
 
   Catalog catalog;
   catalog.server.data_folder = (folder / "../data").lexically_normal();
-  ObjectReader object(value, "", faults);
+  FieldReader object(value, "", faults);
   if (const json* limits = object.find("limits"))
     catalog.limits = read_limits(*limits, "/limits", faults);
   if (const json* server = object.find("server"))

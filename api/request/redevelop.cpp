@@ -6,8 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "api/base/json_reader.h"
-#include "api/request/parse.h"
-#include "api/request/request_reader.h"
+#include "api/request/canonical.h"
+#include "api/request/read_request.h"
+#include "api/request/scene_spec.h"
 #include "renderer/optics/material_cube.h"
 
 namespace translucube::api {

@@ -31,7 +31,7 @@ std::optional<Sha256> from_hex(std::string_view text) {
 
 void read_token(const nlohmann::json& value, const std::string& pointer, std::vector<Token>& tokens,
                 api::Faults& faults) {
-  api::ObjectReader object(value, pointer, faults);
+  api::FieldReader object(value, pointer, faults);
   const auto name = object.string("name", api::Presence::required);
   const auto text = object.string("sha256", api::Presence::required);
   object.refuse_unknown_keys();
@@ -67,7 +67,7 @@ std::vector<Token> load_tokens(const std::filesystem::path& file) {
   auto& [document, faults] = *read;
 
   std::vector<Token> tokens;
-  api::ObjectReader object(document, "", faults);
+  api::FieldReader object(document, "", faults);
   const nlohmann::json* list = object.find("tokens", api::Presence::required);
   object.refuse_unknown_keys();
   if (list && !list->is_array()) object.fault("tokens", "must be an array");

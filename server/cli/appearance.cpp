@@ -2,7 +2,9 @@
 
 #include <iostream>
 
+#include "api/answer/appearance_report.h"
 #include "api/request/appearance_request.h"
+#include "api/request/scene_spec.h"
 #include "server/base/file.h"
 #include "server/cli/input.h"
 #include "server/cli/verbs.h"
@@ -26,8 +28,10 @@ int appearance_or_throw(const AppearanceOptions& options) {
     return exit_failure;
   }
   const auto& request = *parsed;
-  const std::string answer =
-      appearance_json(request, measure(request, catalog, options.threads), catalog);
+  const Material material = scene_spec(render_request(request, catalog), catalog).material;
+  const SlabAppearance appearance = slab_appearance(
+      material, request.thickness_mm, request.standard_error, request.seed, options.threads);
+  const std::string answer = appearance_json(request, appearance, catalog);
   if (options.output) {
     write_atomically(*options.output, answer);
     return 0;

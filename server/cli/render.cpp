@@ -10,8 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <stop_token>
 
+#include "api/answer/material_report.h"
 #include "api/answer/render_status.h"
+#include "api/request/canonical.h"
 #include "api/request/parse.h"
+#include "api/request/scene_spec.h"
 #include "renderer/film/explorable.h"
 #include "server/base/file.h"
 #include "server/base/signals.h"

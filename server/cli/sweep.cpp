@@ -11,7 +11,8 @@
 
 #include "api/answer/render_status.h"
 #include "api/answer/sweep_status.h"
-#include "api/request/parse.h"
+#include "api/request/canonical.h"
+#include "api/request/scene_spec.h"
 #include "renderer/light/environment_cache.h"
 #include "renderer/render.h"
 #include "server/base/file.h"

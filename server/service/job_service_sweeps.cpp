@@ -1,6 +1,6 @@
 #include <charconv>
 
-#include "api/request/parse.h"
+#include "api/request/canonical.h"
 #include "api/request/sweep.h"
 #include "server/pictures/sheet_artifact.h"
 #include "server/service/job_service_parts.h"

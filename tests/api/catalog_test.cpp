@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "api/answer/material_report.h"
 #include "renderer/film/absorption.h"
 #include "tests/api/fixture.h"
 #include "tests/support/repository.h"

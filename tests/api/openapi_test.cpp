@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include "api/answer/listings.h"
+#include "api/answer/material_report.h"
 #include "api/answer/render_status.h"
+#include "api/request/canonical.h"
 #include "api/request/sweep.h"
 #include "tests/api/fixture.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "api/request/parse.h"
+#include "api/request/canonical.h"
 #include "api/request/sweep.h"
 #include "tests/server/fixture.h"
 
