@@ -17,9 +17,6 @@
 
 namespace translucube::api {
 
-/// The shortest text that reads back as the number.
-std::string number_text(double value);
-
 /// An interval of numbers, each end closed or open.
 struct Range {
   double low = -std::numeric_limits<double>::max();

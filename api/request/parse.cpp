@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "api/base/json_reader.h"
+#include "api/base/text.h"
 #include "api/request/read_request.h"
 
 namespace translucube::api {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "api/base/json_reader.h"
+#include "api/base/text.h"
 #include "api/request/read_request.h"
 #include "api/request/sweep.h"
 

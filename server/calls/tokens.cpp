@@ -3,13 +3,13 @@
 #include <openssl/crypto.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <optional>
 
 #include "api/base/field_reader.h"
 #include "api/base/json_reader.h"
+#include "api/base/text.h"
 #include "server/base/ids.h"
 
 namespace translucube::server {
@@ -22,9 +22,9 @@ std::optional<Sha256> from_hex(std::string_view text) {
   Sha256 hash{};
   if (text.size() != 2 * hash.size()) return std::nullopt;
   for (std::size_t i = 0; i < hash.size(); ++i) {
-    const char* at = text.data() + 2 * i;
-    const auto [end, error] = std::from_chars(at, at + 2, hash[i], 16);
-    if (error != std::errc() || end != at + 2) return std::nullopt;
+    const auto byte = api::number_of<unsigned char>(text.substr(2 * i, 2), 16);
+    if (!byte) return std::nullopt;
+    hash[i] = *byte;
   }
   return hash;
 }
