@@ -53,10 +53,9 @@ Lane make_lane(const Material& material, const AnyInterior& interior, double uni
     return make_lane(material.absorber, *material.absorption_per_scattering);
   const double sigma_a_peak = material.coefficients.sigma_a_peak;
   // Light that only touches an opaque body has no length inside it, or hardly any.
-  const bool opaque = std::holds_alternative<BlackInterior>(interior) ||
-                      std::holds_alternative<LambertianInterior>(interior);
-  return opaque && !std::isinf(sigma_a_peak) ? ClearLane{}
-                                             : make_lane(material.absorber, sigma_a_peak * unit_mm);
+  return !is_open(interior) && !std::isinf(sigma_a_peak)
+             ? ClearLane{}
+             : make_lane(material.absorber, sigma_a_peak * unit_mm);
 }
 
 }  // namespace translucube

@@ -16,10 +16,12 @@
 namespace translucube {
 
 struct SmoothInterface {
+  static constexpr bool smooth = true;
   double ior = 1.5;
 };
 
 struct RoughInterface {
+  static constexpr bool smooth = false;
   double ior = 1.5;
   Ggx microfacets;
   bool multiple_scattering = true;  ///< false only where tests compare with renderers that lose it

@@ -153,10 +153,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   if (scene->backdrop && scene->camera.position.z <= scene->backdrop->z)
     throw SceneError(SceneError::Part::camera, "the camera is behind the backdrop");
   if (const auto* model = std::get_if<DipoleModel>(&spec.model)) use_dipole(*model, spec, *scene);
-  const bool open = std::holds_alternative<ClearInterior>(scene->interior) ||
-                    std::holds_alternative<ScatteringInterior>(scene->interior) ||
-                    std::holds_alternative<DipoleInterior>(scene->interior);
-  if (scene->camera_inside && !open)
+  if (scene->camera_inside && !is_open(scene->interior))
     throw SceneError(SceneError::Part::camera, "the camera is inside an opaque body");
   scene->lanes = {make_lane(spec.material, scene->interior, unit)};
   for (const Absorption& more : spec.more_absorptions) {
@@ -168,7 +165,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   if (spec.explorable) {
     const auto* walk = std::get_if<ScatteringInterior>(&scene->interior);
     scene->spread = BinSpread(
-        explorable_bins(spec.explorable->densest_sigma_a * unit, walk ? walk->medium.sigma_s : 0));
+        length_bins(spec.explorable->densest_sigma_a * unit, walk ? walk->medium.sigma_s : 0));
   }
   return scene;
 }

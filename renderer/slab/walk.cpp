@@ -45,9 +45,9 @@ double sample_exit_time(Rng& rng) {
 
 template <class Interface, class Interior>
 class Walk {
-  static constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
-  static constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
-  static constexpr bool open = scattering || std::is_same_v<Interior, ClearInterior>;
+  static constexpr bool smooth = Interface::smooth;
+  static constexpr bool scattering = Interior::facts.scatters;
+  static constexpr bool open = Interior::facts.open;
 
  public:
   Walk(const SlabBody& body, const Interface& interface, const Interior& interior,
@@ -296,11 +296,9 @@ void walk_slab(const SlabBody& body, Incidence incidence, std::uint64_t key, std
       [&](const auto& interface, const auto& interior) {
         using Interface = std::decay_t<decltype(interface)>;
         using Interior = std::decay_t<decltype(interior)>;
-        constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
-        constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
-        constexpr bool empty =
-            std::is_same_v<Interior, ClearInterior> || std::is_same_v<Interior, BlackInterior>;
-        if constexpr (scattering || (!smooth && empty)) {
+        constexpr bool scattering = Interior::facts.scatters;
+        constexpr bool smooth = Interface::smooth;
+        if constexpr (scattering || (!smooth && !Interior::facts.diffuse)) {
           Walk walk(body, interface, interior, incidence, jumps, tally);
           // The low-discrepancy points are 2^16 to a key.
           for (std::uint64_t i = first; i < first + count; ++i)

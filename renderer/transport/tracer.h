@@ -1,40 +1,64 @@
 #pragma once
 
-// Light transport in the cube, backwards from the camera, in stages:
+// Light transport in the cube, backwards from the camera. What is carried is an achromatic weight
+// and the length travelled inside the body; absorption comes with the film's lanes. In stages, each
+// one loop over a queue of paths:
 //
-//   emit -> enter -> walk -> boundary -> connect
+//   emit    camera samples                                                    tracer.h
+//   enter   rays outside: to where they hit the body, and a share goes in     enter.inl
+//   walk    flights inside, from scatterer to scatterer, to the boundary      walk.inl
+//   leave   paths inside at the boundary: a share goes out, the rest walks    leave.inl
+//   escape  what went out for good: to the environment or the backdrop        escape.inl
 //
-// Each stage is one loop over a queue of paths. What is carried is an achromatic weight and the
-// length travelled inside the body; absorption comes with the film's lanes. At a smooth boundary
-// both branches are followed; the light that no particle deflects is enumerated, not sampled, and
-// one scattered path stands for all that is deflected on the way (a reservoir of one: Chao 1982).
-// Paths of small weight are played out by Russian roulette, so that the branches in flight stay
-// bounded.
+// and between them, where the light
+//
+//   crosses a rough interface, from microfacet to microfacet                  cross.inl
+//   comes back from a dense body, in all directions                           diffuse.inl
+//
+// At a smooth boundary both branches are followed; the light that no particle deflects is
+// enumerated, not sampled, and one scattered path stands for all that is deflected on the way (a
+// reservoir of one: Chao 1982). Paths of small weight are played out by Russian roulette, so that
+// the branches in flight stay bounded.
+//
+// What runs inside, by interior and shape:
+//
+//                  sphere                               any other shape
+//   black          nothing                              the same
+//   clear          straight flights                     the same
+//   dipole         straight flights, return_dipole()    the same
+//   Lambertian     return_diffuse()                     the same
+//   dense pigment  walk_alone() in a half space         the same
+//   scattering     walk_together(), in SIMD;            walk_alone(), in a mesh with a Clearing;
+//                  vertices look for light by           no light is looked for inside
+//                  SmoothConnector or RoughConnector
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <type_traits>
 #include <variant>
 
 #include "renderer/light/environment_batch.h"
+#include "renderer/optics/lambertian.h"
 #include "renderer/optics/microsurface_batch.h"
 #include "renderer/transport/collector.h"
+#include "renderer/transport/dipole_exit.h"
 #include "renderer/transport/path.h"
 #include "renderer/transport/sphere/rough_connector.h"
 #include "renderer/transport/sphere/smooth_connector.h"
 #include "renderer/transport/sphere/sphere_walk.h"
-#include "renderer/transport/trace_body.h"
+#include "renderer/transport/transport.h"
 
 namespace translucube {
 
 /// Below this weight a path survives with probability weight / threshold: low where following it is
 /// cheap, high where each turn is a long walk (chosen by relMSE x CPU on the peers' materials).
 inline constexpr double roulette_of_clear = 1.0 / 64;
-/// The same for a scattered path, relative to its weight at the first scattering.
+/// The threshold of a scattered path, relative to its weight at the first scattering.
 inline constexpr double roulette_of_scattered = 1.0 / 4;
-/// The same inside a clear body under a rough interface.
+/// The threshold inside a clear body under a rough interface, relative to the weight that went in.
 inline constexpr double roulette_of_rough = 1.0 / 8;
 /// Lights that a collision with a microfacet looks for.
 inline constexpr std::uint32_t lights_of_a_collision = 8;
@@ -47,47 +71,58 @@ inline constexpr std::uint32_t clear_event_cap = 20'000, scattering_event_cap = 
 /// In the dipole model, times that light may come back to the body from outside, likewise.
 inline constexpr std::uint32_t dipole_arrival_cap = 16;
 
-template <class Shape, class Interface, class Interior>
+/// One alternative of each part of a scene's body, and what follows from the three.
+template <class ShapeType, class InterfaceType, class InteriorType>
+struct Body {
+  using Shape = ShapeType;
+  using Interface = InterfaceType;
+  using Interior = InteriorType;
+  const Shape& shape;
+  const Interface& interface;
+  const Interior& interior;
+
+  static constexpr InteriorFacts inside = Interior::facts;
+  static constexpr bool smooth = Interface::smooth;
+  /// Paths go on below the interface, and come to it from inside.
+  static constexpr bool lets_in = inside.open || inside.half_space;
+  /// Walks go on together, in SIMD: what a sphere's boundary is simple enough for.
+  static constexpr bool walks_together = inside.scatters && std::is_same_v<Shape, Sphere>;
+  /// Trapped light rolls from reflection to reflection in one step.
+  static constexpr bool rolls = inside.scatters && std::is_same_v<Shape, Sphere>;
+  /// Scattering vertices look for light through the boundary: those that walks together report.
+  static constexpr bool looks_for_light = walks_together;
+  using Connector = std::conditional_t<!looks_for_light, NoConnector,
+                                       std::conditional_t<smooth, SmoothConnector, RoughConnector>>;
+};
+
+template <class Body>
 class Tracer {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  static constexpr bool smooth = std::is_same_v<Interface, SmoothInterface>;
-  static constexpr bool scattering = std::is_same_v<Interior, ScatteringInterior>;
-  static constexpr bool lambertian = std::is_same_v<Interior, LambertianInterior>;
-  static constexpr bool dense = std::is_same_v<Interior, DensePigmentInterior>;
-  static constexpr bool dipole = std::is_same_v<Interior, DipoleInterior>;
-  /// Whether walks go on together in SIMD, and their vertices may look for light through the
-  /// boundary.
-  static constexpr bool connecting = scattering && std::is_same_v<Shape, Sphere>;
-  using Connector = std::conditional_t<!connecting, NoConnector,
-                                       std::conditional_t<smooth, SmoothConnector, RoughConnector>>;
-  /// Whether light goes on inside the body.
-  static constexpr bool open =
-      scattering || dense || dipole || std::is_same_v<Interior, ClearInterior>;
+  using Connector = typename Body::Connector;
 
  public:
-  Tracer(const Scene& scene, const Shape& shape, const Interface& interface,
-         const Interior& interior, Tile& tile, std::uint64_t key, std::string* log)
+  Tracer(const Scene& scene, const Body& body, Tile& tile, std::uint64_t key, std::string* log)
       : scene_(scene),
-        shape_(shape),
-        interface_(interface),
-        interior_(interior),
+        shape_(body.shape),
+        interface_(body.interface),
+        interior_(body.interior),
         tile_(tile),
         collector_(scene, tile, log),
         lights_(lights_of(scene, key)),
-        may_come_back_(!shape.convex() ||
+        may_come_back_(!shape_.convex() ||
                        (scene.backdrop && scene.backdrop->kind == BackdropKind::print)),
         connector_(make_connector(scene, key)),
-        arriving_(tile.queues.arriving),
+        entering_(tile.queues.entering),
         walking_(tile.queues.walking),
         leaving_(tile.queues.leaving),
         crossing_(tile.queues.crossing) {}
 
-  void run(std::uint32_t pass_index, std::uint32_t first, std::uint32_t count) {
-    for (std::uint32_t s = first; s < first + count; ++s) emit(pass_index, s);
-    while (!arriving_.empty() || !walking_.empty()) {
+  void run(const SampleRange& samples) {
+    for (std::uint32_t i = 0; i < samples.count; ++i) emit(samples.pass_index, samples.first + i);
+    while (!entering_.empty() || !walking_.empty()) {
       enter();
       walk();
-      boundary();
+      leave();
     }
     connector_.flush();
     for (Escapes& escapes : escapes_) collect(escapes);
@@ -95,7 +130,19 @@ class Tracer {
   }
 
  private:
-  // ---- stages
+  static LightList lights_of(const Scene& scene, std::uint64_t key) {
+    return Body::smooth || !scene.next_event_estimation ? LightList()
+                                                        : LightList(scene.environment, key);
+  }
+
+  Connector make_connector(const Scene& scene, std::uint64_t key) {
+    // Vertices look for light through one interface: where there are two, the walk finds it.
+    static const LightList none;
+    if constexpr (Body::looks_for_light && !Body::smooth)
+      return Connector(scene, collector_, scene.oiled ? none : lights_);
+    else
+      return Connector(scene, collector_, key);
+  }
 
   void emit(std::uint32_t pass_index, std::uint32_t sample) {
     for (int y = 0; y < tile_.height; ++y)
@@ -114,177 +161,76 @@ class Tracer {
         collector_.note("emit", path);
         ++tile_.counters.camera_samples;
         if (!scene_.camera_inside) {
-          arriving_.push_back(path);
-        } else if constexpr (open) {
-          inward(path);
+          entering_.push_back(path);
+        } else if constexpr (Body::inside.open) {
+          go_in(path);
         }
       }
   }
 
-  static LightList lights_of(const Scene& scene, std::uint64_t key) {
-    return smooth || !scene.next_event_estimation ? LightList() : LightList(scene.environment, key);
-  }
+  // ---- enter.inl
 
-  Connector make_connector(const Scene& scene, std::uint64_t key) {
-    // Vertices look for light through one interface: where there are two, the walk finds it.
-    static const LightList none;
-    if constexpr (connecting && !smooth)
-      return Connector(scene, collector_, scene.oiled ? none : lights_);
-    else
-      return Connector(scene, collector_, key);
-  }
+  void enter();
+  void arrive_outside(Path path);
+  void enter_smooth(Path path);
+  void go_in(Path& path);
 
-  /// Rays outside: to the environment, or through the interface into the body.
-  void enter() {
-    std::size_t i = 0;
-    do {
-      for (; i < arriving_.size(); ++i) arrive_outside(arriving_[i]);
-      if constexpr (!smooth) cross_rough(true);  // what it sends may arrive again
-    } while (i < arriving_.size());
-    arriving_.clear();
-  }
+  // ---- walk.inl
 
-  void arrive_outside(Path path) {
-    Hit hit;
-    if (!shape_.enter(path.p, path.d, hit)) return escape(path);
-    path.p = hit.p;
-    path.n = hit.n;
-    collector_.note("enter", path);
-    if (!count_event(path)) return;
-    if (is_smooth_at(path))
-      enter_smooth(path);
-    else if constexpr (!smooth)
-      enter_rough(path);
-  }
-
-  // ---- inside the body (tracer_walk.h)
-
-  /// Flights inside until the boundary.
   void walk();
   void walk_together();
-  /// 1 - |p|^2 of a walk's start.
-  static double depth2(const Path& path) {
-    return path.p == path.n ? 0 : std::fmax(0.0, 1 - length_squared(path.p));
-  }
-  /// Where walks of many have come to the boundary.
+  /// Takes over where walks of many have come to the boundary.
   void arrive(const SphereWalk::Arrivals& arrivals, std::span<const Path> paths);
   /// To the boundary; false for a path that lost its way.
-  bool cross_body(Path& path, Hit& hit);
-  /// `collide(surroundings)` gives the particle its new direction.
-  template <class Place, class Collide>
-  bool walk_to_boundary(const Place& body, const Medium& medium, Particle& particle, Rng& rng,
-                        Hit& hit, Collide&& collide);
-
-  /// At a collision.
-  void collide(Path& path) {
-    if constexpr (connecting)
-      path.colliding = true;
-    else
-      scatter(shape_, interior_.medium, path, path.sampler.rng());
-  }
-
-  /// Paths inside at the boundary: what leaves is collected with its weight, what stays walks on.
-  void boundary() {
-    if constexpr (open) {
-      for (Path& path : leaving_) {
-        if (!count_event(path)) continue;
-        if (is_smooth_at(path)) {
-          leave_smooth(path);
-          if (path.survives()) walking_.push_back(path);
-        } else if constexpr (!smooth) {
-          leave_rough(path);
-        }
-      }
-      if constexpr (!smooth) cross_rough(false);
-    }
-    leaving_.clear();
-  }
-
-  // ---- the smooth interface (tracer_smooth.h)
-
-  void enter_smooth(Path path);
+  bool walk_alone(Path& path, Hit& hit);
+  template <class Place>
+  bool walk_to_boundary(const Place& place, const Medium& medium, Particle& particle, Rng& rng,
+                        Hit& hit);
   /// The light that crosses the body unscattered, all of it; what is scattered on the way goes to
   /// walk() as one path.
   void follow_unscattered(Path path);
+  void start_walks(const Path& scattered, double weight, PathSampler& sampler);
+  void collide(Path& path);
+  void arrive_inside(Path& path, const Hit& hit);
+
+  // ---- leave.inl
+
+  void leave();
+  /// Sends out the transmitted share, keeps the reflected one.
+  void leave_smooth(Path& path);
   /// Whether all light is reflected here, and again at every other place until it is scattered.
   bool traps(const Path& path) const;
   /// From total reflection to the next collision, over all reflections between.
   void roll(Path& path);
-  /// At the boundary from inside: sends out the transmitted share, keeps the reflected one.
-  void leave_smooth(Path& path);
+  void go_out(Path& from, Vec3 direction, double weight, double pdf);
+  void go_back(Path& path);
 
-  // ---- the rough interface (tracer_rough.h)
+  // ---- cross.inl
 
-  void enter_rough(Path path);
-  void leave_rough(const Path& path);
   /// Has the path wait at the interface, for others to cross with it.
   void await_crossing(const Path& path, bool from_outside);
   /// All that wait, from microfacet to microfacet: what escapes outwards is sent out, and one of
   /// the rays that escape into the body stands for all of them.
   void cross_rough(bool from_outside);
+  void go_on_inside(Path& path, bool from_outside);
   /// What left at the collisions just made.
   void send_out(std::uint32_t lights_each);
 
-  // ---- light that leaves in all directions (tracer_diffuse.h)
+  // ---- diffuse.inl
 
   /// The body right below the interface at path.p.
-  const InterfacedLambertian& diffuse_base(const Path& path) const {
-    if constexpr (lambertian && !smooth)
-      if (is_smooth_at(path)) return interior_.oiled;
-    return interior_.base;
-  }
+  const InterfacedLambertian& diffuse_base(const Path& path) const;
   /// What the background below path.p sends back through the interface, all that came in.
   void return_diffuse(Path& path);
   /// What the body sends out at a point, of light that went in there or elsewhere: one sample for
   /// plastic's diffuse half and the dipole together (dipole.h).
-  void enter_dipole(Path& arriving);
-
-  // ---- between stages
-
-  /// Next-event estimation at a rough exit (tracer_escapes.h): a direction of the environment,
-  /// weighted by the balance heuristic (Veach 1995) against those that the interface samples
-  /// itself.
+  void return_dipole(Path& arriving);
+  /// Next-event estimation where light leaves in all directions: a direction of the environment,
+  /// weighted by the balance heuristic (Veach 1995) against those that the body samples itself.
   template <class Evaluate>
   void connect(Path& path, const Frame& frame, Evaluate&& evaluate);
 
-  /// Into the body.
-  void inward(Path& path) {
-    if (!path.survives()) return;
-    if constexpr (smooth && !dense) {
-      follow_unscattered(path);
-    } else {
-      path.roulette =
-          (scattering || dense ? roulette_of_scattered : roulette_of_rough) * path.weight;
-      walking_.push_back(path);
-    }
-  }
-
-  /// Out of the body: to the environment, or where the body may be hit again, back to enter().
-  void leave(Path& from, Vec3 direction, double weight, double pdf) {
-    Path path = from;
-    path.d = direction;
-    path.weight = weight;
-    path.pdf = pdf;
-    if (!may_come_back_) return escape(path);
-    path.sampler = from.sampler.split();
-    go_back(path);
-  }
-
-  /// Towards the body once more.
-  void go_back(Path& path) {
-    // A model that gains energy has no answer in deep cavities: the branches must not multiply.
-    if constexpr (dipole) {
-      if (++path.arrivals > 2) path.roulette = 1;
-      if (path.arrivals > dipole_arrival_cap) return collector_.give_up(path);
-    }
-    if (path.survives()) arriving_.push_back(path);
-  }
-
-  /// A path that leaves towards the backdrop (tracer_backdrop.h): collects its light, or sends it
-  /// back.
-  void meet_backdrop(const Path& path);
-  /// From a print, in all directions.
-  void leave_print(Path path);
+  // ---- escape.inl
 
   struct Escape {
     Vec3 n;
@@ -295,77 +241,68 @@ class Tracer {
     EnvironmentBatch batch;
     std::array<Escape, EnvironmentBatch::capacity> from;
   };
-
-  /// To the environment, where many look together (tracer_escapes.h).
+  /// To the environment, where many look together.
   void escape(const Path& path);
   void collect(Escapes& escapes);
+  /// Collects the backdrop's light, or sends the path back.
+  void meet_backdrop(const Path& path);
+  /// From a print, in all directions.
+  void leave_print(Path path);
 
-  void arrive_inside(Path& path, const Hit& hit) {
-    path.length += hit.t;
-    path.p = hit.p;
-    path.n = hit.n;
-    collector_.note("boundary", path);
-  }
+  // ---- at any boundary
 
   bool is_smooth_at(const Path& path) const {
-    return smooth || (scene_.oiled && scene_.oiled->covers(path.p));
+    return Body::smooth || (scene_.oiled && scene_.oiled->covers(path.p));
   }
 
   bool count_event(Path& path) {
     ++tile_.counters.boundary_events;
-    if (++path.events < (scattering ? scattering_event_cap : clear_event_cap)) return true;
+    if (++path.events < (Body::inside.scatters ? scattering_event_cap : clear_event_cap))
+      return true;
     collector_.give_up(path);
     return false;
   }
 
-  /// A path that slipped out of a mesh by rounding would walk for ever.
-  static bool strayed(const Particle& particle) {
-    if constexpr (std::is_same_v<Shape, Mesh> && !dense) return length_squared(particle.p) > 1.01;
-    return false;
-  }
-
   const Scene& scene_;
-  const Shape& shape_;
-  const Interface& interface_;
-  const Interior& interior_;
+  const typename Body::Shape& shape_;
+  const typename Body::Interface& interface_;
+  const typename Body::Interior& interior_;
   Tile& tile_;
   Collector collector_;
   LightList lights_;    ///< of the rough interface
   bool may_come_back_;  ///< whether what leaves may arrive again
   Connector connector_;
-  std::conditional_t<connecting, SphereWalk, std::monostate> sphere_walk_;
+  std::conditional_t<Body::walks_together, SphereWalk, std::monostate> sphere_walk_;
   /// What was never inside waits apart from the rest: sums of floats depend on their order, and a
   /// black body traced alone must have the bits of a black lane.
   std::array<Escapes, 2> escapes_;
-  std::vector<Path>&arriving_, &walking_, &leaving_;
+  std::vector<Path>&entering_, &walking_, &leaving_;
   std::vector<Path>& crossing_;  ///< at the rough interface
   MicrosurfaceBatch microsurface_;
 };
 
-/// Of what the paths of a tile share, a few samples at a time.
-inline std::uint64_t shared_key(const Scene& scene, std::uint32_t pass_index, std::uint32_t first,
-                                const Tile& tile) {
-  const std::uint64_t batch = hash_combine(pass_index, first / samples_at_once);
+/// The key of what the paths of a tile share, a few samples at a time.
+inline std::uint64_t shared_key(const Scene& scene, const SampleRange& samples, const Tile& tile) {
+  const std::uint64_t batch = hash_combine(samples.pass_index, samples.first / samples_at_once);
   return hash_combine(hash_combine(scene.seed, tile.index), batch);
 }
 
 template <class Shape>
-void trace_body(const Shape& shape, const Scene& scene, std::uint32_t pass_index,
-                std::uint32_t first, std::uint32_t count, Tile& tile, std::string* log) {
+void trace_body(const Shape& shape, const Scene& scene, const SampleRange& samples, Tile& tile,
+                std::string* log) {
   std::visit(
       [&](const auto& interface, const auto& interior) {
-        Tracer(scene, shape, interface, interior, tile, shared_key(scene, pass_index, first, tile),
-               log)
-            .run(pass_index, first, count);
+        Tracer(scene, Body{shape, interface, interior}, tile, shared_key(scene, samples, tile), log)
+            .run(samples);
       },
       scene.interface, scene.interior);
 }
 
 }  // namespace translucube
 
-#include "renderer/transport/tracer_backdrop.h"
-#include "renderer/transport/tracer_diffuse.h"
-#include "renderer/transport/tracer_escapes.h"
-#include "renderer/transport/tracer_rough.h"
-#include "renderer/transport/tracer_smooth.h"
-#include "renderer/transport/tracer_walk.h"
+#include "renderer/transport/cross.inl"
+#include "renderer/transport/diffuse.inl"
+#include "renderer/transport/enter.inl"
+#include "renderer/transport/escape.inl"
+#include "renderer/transport/leave.inl"
+#include "renderer/transport/walk.inl"

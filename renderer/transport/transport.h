@@ -1,5 +1,8 @@
 #pragma once
 
+// What the transport is called by. trace_tile() finds the shape, trace_body() (tracer.h) the
+// interface and the interior: a tracer for each combination, compiled shape by shape in instances/.
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,9 +17,14 @@ namespace translucube {
 /// Camera samples of a pixel that are in flight at once: a tile's paths then fit the L2 cache.
 inline constexpr std::uint32_t samples_at_once = 4;
 
+/// Camera samples [first, first + count) of a pass, for every pixel.
+struct SampleRange {
+  std::uint32_t pass_index, first, count;
+};
+
 /// Where paths wait for their next stage.
 struct PathQueues {
-  std::vector<Path> arriving, walking, leaving;
+  std::vector<Path> entering, walking, leaving;
   std::vector<Path> crossing;  ///< at the rough interface
 };
 
@@ -29,9 +37,14 @@ struct Tile {
   PathQueues queues;  ///< empty between calls; only their memory stays
 };
 
-/// Adds camera samples [first, first + count) of a pass to every pixel of the tile. `log`, where
-/// given, receives a line for every event.
-void trace_tile(const Scene& scene, std::uint32_t pass_index, std::uint32_t first,
-                std::uint32_t count, Tile& tile, std::string* log = nullptr);
+template <class Shape>
+void trace_body(const Shape& shape, const Scene& scene, const SampleRange& samples, Tile& tile,
+                std::string* log);
+
+/// Adds the samples to the tile. `log`, where given, receives a line for every event.
+inline void trace_tile(const Scene& scene, const SampleRange& samples, Tile& tile,
+                       std::string* log = nullptr) {
+  std::visit([&](const auto& shape) { trace_body(shape, scene, samples, tile, log); }, scene.shape);
+}
 
 }  // namespace translucube

@@ -41,6 +41,16 @@ bool large_step(Shape&& shape, const Medium& medium, Particle& particle, Rng& rn
   return true;
 }
 
+/// Whether a particle is outside by more than rounding: one that slipped out of a mesh by rounding
+/// would walk for ever.
+template <class Shape>
+bool strayed(const Shape&, const Particle&) {
+  return false;
+}
+inline bool strayed(const Mesh&, const Particle& particle) {
+  return length_squared(particle.p) > 1.01;
+}
+
 /// A collision: a new direction, after a large step where there is room for one.
 template <class Shape>
 void scatter(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng) {

@@ -4,7 +4,8 @@
 #include <memory>
 
 #include "api/request/redevelop.h"
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_develop.h"
+#include "renderer/film/explorable_file.h"
 #include "server/cli/command.h"
 #include "server/cli/config.h"
 #include "server/cli/options.h"

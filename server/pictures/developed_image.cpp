@@ -1,6 +1,7 @@
 #include "server/pictures/developed_image.h"
 
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_develop.h"
+#include "renderer/film/explorable_file.h"
 #include "server/base/ids.h"
 
 namespace translucube::server {

@@ -59,13 +59,13 @@ Result<Submission> JobService::submit(std::string_view document,
     if (!outcome) return outcome.problem();
     const auto& submitted = *outcome;
     if (submitted.created) {
-      if (submitted.job.cached)
+      if (submitted.stored.cached)
         metrics_.count_cache_hit();
       else
         metrics_.count_cache_miss();
       workers_->wake();
     }
-    return Submission{status_of(submitted.job), submitted.created};
+    return Submission{status_of(submitted.stored), submitted.created};
   });
 }
 
@@ -103,7 +103,8 @@ Result<api::RenderStatus> JobService::cancel(const std::string& id) {
   return guarded([&]() -> Result<api::RenderStatus> {
     const std::optional<Job> known = store_.find(id);
     if (!known || known->sweep_image) return no_such_render();
-    const std::optional<Job> job = store_.cancel(id);
+    store_.cancel(id);
+    const std::optional<Job> job = store_.find(id);
     if (!job) return no_such_render();
     if (job->state == api::JobState::canceled) {
       workers_->stop_job(id);

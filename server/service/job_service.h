@@ -17,6 +17,7 @@
 #include "api/base/result.h"
 #include "api/request/catalog.h"
 #include "picture/color.h"
+#include "server/base/ids.h"
 #include "server/base/recent.h"
 #include "server/base/server_config.h"
 #include "server/pictures/explorable_cache.h"

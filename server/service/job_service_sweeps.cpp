@@ -84,7 +84,7 @@ Result<SweepSubmission> JobService::submit_sweep(
     if (!outcome) return outcome.problem();
     const auto& submitted = *outcome;
     if (submitted.created) workers_->wake();
-    auto status = status_of(submitted.sweep, store_, catalog_);
+    auto status = status_of(submitted.stored, store_, catalog_);
     if (!status) return status.problem();
     for (const api::SweepImageStatus& image : status->images)
       if (submitted.created && image.cached) metrics_.count_cache_hit();
@@ -125,7 +125,9 @@ Result<SweepPage> JobService::list_sweeps(const ListQuery& query) const {
 
 Result<api::SweepStatus> JobService::cancel_sweep(const std::string& id) {
   return guarded([&]() -> Result<api::SweepStatus> {
-    const std::optional<StoredSweep> sweep = store_.cancel_sweep(id);
+    if (!store_.find_sweep(id)) return no_such_sweep();
+    store_.cancel(id);
+    const std::optional<StoredSweep> sweep = store_.find_sweep(id);
     if (!sweep) return no_such_sweep();
     if (sweep->state == api::JobState::canceled) {
       for (const SweepImageState& image : store_.sweep_images(id)) {
@@ -146,7 +148,8 @@ std::optional<Problem> JobService::remove_sweep(const std::string& id) {
   };
   const auto result = guarded([&]() -> Result<Removed> {
     const std::vector<SweepImageState> images = store_.sweep_images(id);
-    const auto unused = store_.remove_sweep(id);
+    if (!store_.find_sweep(id)) return no_such_sweep();
+    const auto unused = store_.remove(id);
     if (!unused) return no_such_sweep();
     return Removed{images, *unused};
   });

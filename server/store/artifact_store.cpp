@@ -3,6 +3,7 @@
 #include <map>
 
 #include "api/base/text.h"
+#include "renderer/film/film_bytes.h"
 
 namespace translucube::server {
 namespace {

@@ -69,7 +69,7 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
   hand_.unsaved_from = in_memory ? 0 : task.pass.index;
   Film film = in_memory ? std::move(*in_memory)
                         : workshop_.artifacts.read_film(task.job_id, task.pass.index);
-  hand_.seconds = workshop_.store.traced_seconds(task.job_id);
+  hand_.seconds = job.progress.seconds;
   hand_.seconds_at_checkpoint = hand_.seconds;
   // A checkpoint lost to a broken disk costs time, not the render.
   while (film.passes < task.pass.index) {

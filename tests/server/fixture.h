@@ -15,6 +15,7 @@
 #include "api/base/config_file.h"
 #include "api/request/catalog.h"
 #include "picture/color.h"
+#include "renderer/film/film_error.h"
 #include "server/base/file.h"
 #include "server/base/places.h"
 #include "server/base/server_config.h"
@@ -123,7 +124,8 @@ class TestService {
         config(configured(options)),
         colors(catalog.display_config),
         data(folder),
-        store(data.store_file(), options.store),
+        own_store(open_job_store(data.store_file(), options.store)),
+        store(*own_store),
         artifacts(data.artifacts()),
         service(catalog, config, colors, store, artifacts, metrics, std::move(engine)) {}
 
@@ -170,7 +172,8 @@ class TestService {
   ServerConfig config;
   ColorConfig colors;
   DataFolder data;
-  JobStore store;
+  std::unique_ptr<JobStore> own_store;
+  JobStore& store;
   ArtifactStore artifacts;
   Metrics metrics;
   JobService service;

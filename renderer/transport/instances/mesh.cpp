@@ -1,8 +1,4 @@
 #include "renderer/transport/tracer.h"
 
-namespace translucube {
-
-template void trace_body(const Mesh&, const Scene&, std::uint32_t, std::uint32_t, std::uint32_t,
-                         Tile&, std::string*);
-
-}  // namespace translucube
+template void translucube::trace_body(const Mesh&, const Scene&, const SampleRange&, Tile&,
+                                      std::string*);

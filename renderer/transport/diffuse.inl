@@ -1,16 +1,16 @@
-#pragma once
-
-// Light that the body sends out in all directions: of the infinitely dense body, and of the paper's
-// model.
-
-#include "renderer/optics/lambertian.h"
-#include "renderer/transport/dipole_exit.h"
-#include "renderer/transport/tracer.h"
+// Light that comes back in all directions: of the infinitely dense body, and of the paper's model.
 
 namespace translucube {
 
-template <class Shape, class Interface, class Interior>
-void Tracer<Shape, Interface, Interior>::return_diffuse(Path& path) {
+template <class Body>
+const InterfacedLambertian& Tracer<Body>::diffuse_base(const Path& path) const {
+  if constexpr (Body::inside.diffuse && !Body::smooth)
+    if (is_smooth_at(path)) return interior_.oiled;
+  return interior_.base;
+}
+
+template <class Body>
+void Tracer<Body>::return_diffuse(Path& path) {
   path.length += shortest_length;  // it was inside
   const Frame frame(path.n);
   const InterfacedLambertian& base = diffuse_base(path);
@@ -19,11 +19,11 @@ void Tracer<Shape, Interface, Interior>::return_diffuse(Path& path) {
   const Vec3 wi = InterfacedLambertian::sample(path.sampler.next2());
   const LobeValue value = emit(wi);
   if (value.f_cos > 0)
-    leave(path, frame.to_world(wi), path.weight * value.f_cos / value.pdf, value.pdf);
+    go_out(path, frame.to_world(wi), path.weight * value.f_cos / value.pdf, value.pdf);
 }
 
-template <class Shape, class Interface, class Interior>
-void Tracer<Shape, Interface, Interior>::enter_dipole(Path& arriving) {
+template <class Body>
+void Tracer<Body>::return_dipole(Path& arriving) {
   const double all = interior_.here + interior_.elsewhere;
   if (all <= 0) return;
   Path path = arriving;
@@ -52,6 +52,23 @@ void Tracer<Shape, Interface, Interior>::enter_dipole(Path& arriving) {
   path.weight *= interior_.base.transmittance(cos_o);
   return_diffuse(path);
   arriving.sampler = path.sampler;
+}
+
+template <class Body>
+template <class Evaluate>
+void Tracer<Body>::connect(Path& path, const Frame& frame, Evaluate&& evaluate) {
+  const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
+  // The same from everywhere: nothing to look for.
+  if (environment == nullptr || !scene_.next_event_estimation) return;
+  const EnvironmentSample light = environment->sample(path.sampler.next2());
+  ++tile_.counters.connections;
+  const LobeValue value = evaluate(frame.to_local(light.direction));
+  if (value.f_cos <= 0) return;
+  Hit hit;
+  if (!shape_.convex() && shape_.enter(path.p, light.direction, hit)) return;
+  collector_.note("connect", path);
+  collector_.collect(path, light.value.radiance,
+                     path.weight * value.f_cos / (light.value.pdf + value.pdf));
 }
 
 }  // namespace translucube

@@ -1,33 +1,18 @@
-#pragma once
-
-// The rough boundary: from microfacet to microfacet, many paths at a time.
-
-#include "renderer/transport/tracer.h"
+// The rough boundary, from either side: from microfacet to microfacet, many paths at a time.
 
 namespace translucube {
 
-template <class Shape, class Interface, class Interior>
-void Tracer<Shape, Interface, Interior>::enter_rough(Path path) {
-  if constexpr (dipole) enter_dipole(path);
-  await_crossing(path, true);
-}
-
-template <class Shape, class Interface, class Interior>
-void Tracer<Shape, Interface, Interior>::leave_rough(const Path& path) {
-  await_crossing(path, false);
-}
-
-template <class Shape, class Interface, class Interior>
-void Tracer<Shape, Interface, Interior>::await_crossing(const Path& path, bool from_outside) {
+template <class Body>
+void Tracer<Body>::await_crossing(const Path& path, bool from_outside) {
   crossing_.push_back(path);
   PathSampler& sampler = crossing_.back().sampler;
   microsurface_.push(from_outside ? path.n : -path.n, path.d, sampler.next2(), sampler.rng().bits(),
-                     connecting && !from_outside && path.vertex.phase > 0);
+                     Body::looks_for_light && !from_outside && path.vertex.phase > 0);
   if (crossing_.size() == MicrosurfaceBatch::capacity) cross_rough(from_outside);
 }
 
-template <class Shape, class Interface, class Interior>
-void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
+template <class Body>
+void Tracer<Body>::cross_rough(bool from_outside) {
   const double ior = interface_.ior;
   const BatchInterface interface {
     static_cast<float>(interface_.microfacets.alpha),
@@ -53,31 +38,34 @@ void Tracer<Shape, Interface, Interior>::cross_rough(bool from_outside) {
   for (std::size_t i = 0; i < crossing_.size(); ++i) {
     Path& path = crossing_[i];
     collector_.collect(path, found[i], path.weight);
-    if constexpr (open || lambertian) {
+    if constexpr (Body::lets_in || Body::inside.diffuse) {
       path.weight *= microsurface_.inward_weight(i);
-      if (path.weight <= 0) continue;
       path.pdf = 0;
       path.d = microsurface_.inward(i);
-      if (!from_outside) {
-        if (path.survives()) walking_.push_back(path);
-        continue;
-      }
-      if constexpr (dipole) path.weight *= interior_.clear_share;
-      if constexpr (lambertian) return_diffuse(path);
-      if constexpr (open) {
-        if (path.weight > 0) inward(path);
-      }
+      if (path.weight > 0) go_on_inside(path, from_outside);
     }
   }
   crossing_.clear();
 }
 
-template <class Shape, class Interface, class Interior>
-void Tracer<Shape, Interface, Interior>::send_out(std::uint32_t lights_each) {
+template <class Body>
+void Tracer<Body>::go_on_inside(Path& path, bool from_outside) {
+  if (!from_outside) {
+    if (path.survives()) walking_.push_back(path);
+    return;
+  }
+  if constexpr (Body::inside.dipole) path.weight *= interior_.clear_share;
+  if constexpr (Body::inside.diffuse) return_diffuse(path);
+  if constexpr (Body::lets_in)
+    if (path.weight > 0) go_in(path);
+}
+
+template <class Body>
+void Tracer<Body>::send_out(std::uint32_t lights_each) {
   const MicrosurfaceBatch::Sent& sent = microsurface_.sent();
   const auto direction = [&](std::size_t i) { return Vec3{sent.x[i], sent.y[i], sent.z[i]}; };
   const float* ways = nullptr;
-  if constexpr (connecting) {
+  if constexpr (Body::looks_for_light) {
     for (std::size_t i = 0; i < sent.size; ++i)
       if (sent.connected[i] > 0)
         connector_.push_way(crossing_[sent.slot[i]], direction(i), sent.pdf[i]);
@@ -86,7 +74,7 @@ void Tracer<Shape, Interface, Interior>::send_out(std::uint32_t lights_each) {
   for (std::size_t i = 0; i < sent.size; ++i) {
     Path& path = crossing_[sent.slot[i]];
     const double pdf = sent.connected[i] > 0 ? *ways++ : sent.pdf[i] / lights_each;
-    leave(path, direction(i), path.weight * sent.weight[i], lights_each > 0 ? pdf : 0);
+    go_out(path, direction(i), path.weight * sent.weight[i], lights_each > 0 ? pdf : 0);
   }
 }
 

@@ -1,0 +1,170 @@
+// Flights inside the body: those in a sphere together, in SIMD, all others one after the other.
+
+namespace translucube {
+
+template <class Body>
+void Tracer<Body>::walk() {
+  if constexpr (Body::walks_together) {
+    walk_together();
+  } else if constexpr (Body::lets_in) {
+    for (Path& path : walking_) {
+      Hit hit;
+      if (!walk_alone(path, hit)) {
+        collector_.give_up(path);
+        continue;
+      }
+      arrive_inside(path, hit);
+      leaving_.push_back(path);
+    }
+  }
+  walking_.clear();
+}
+
+template <class Body>
+void Tracer<Body>::walk_together() {
+  const WalkMedium medium = connector_.walk_medium();
+  for (std::size_t first = 0; first < walking_.size(); first += SphereWalk::capacity) {
+    const std::span<Path> paths(&walking_[first],
+                                std::min(SphereWalk::capacity, walking_.size() - first));
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      Path& path = paths[i];
+      const double depth2 = path.p == path.n ? 0 : std::fmax(0.0, 1 - length_squared(path.p));
+      sphere_walk_.push(static_cast<std::uint32_t>(i), path.p, depth2, path.d, path.colliding,
+                        path.sampler.rng().bits());
+    }
+    while (sphere_walk_.under_way() > 0) {
+      tile_.counters.flights += sphere_walk_.under_way();
+      sphere_walk_.advance(medium);
+      connector_.connect(sphere_walk_.vertices(), paths);
+      arrive(sphere_walk_.arrivals(), paths);
+    }
+  }
+}
+
+template <class Body>
+void Tracer<Body>::arrive(const SphereWalk::Arrivals& arrivals, std::span<const Path> paths) {
+  for (std::size_t i = 0; i < arrivals.size; ++i) {
+    Path& path = leaving_.emplace_back(paths[arrivals.slot[i]]);
+    path.p = path.n = {arrivals.n_x[i], arrivals.n_y[i], arrivals.n_z[i]};
+    path.d = {arrivals.d_x[i], arrivals.d_y[i], arrivals.d_z[i]};
+    path.length += arrivals.length[i];
+    path.vertex = {{arrivals.from_x[i], arrivals.from_y[i], arrivals.from_z[i]},
+                   arrivals.from_depth2[i],
+                   arrivals.flight[i],
+                   arrivals.phase[i]};
+    path.colliding = false;
+    collector_.note("boundary", path);
+  }
+}
+
+template <class Body>
+bool Tracer<Body>::walk_alone(Path& path, Hit& hit) {
+  Rng& rng = path.sampler.rng();
+  if constexpr (Body::inside.scatters) {
+    return walk_to_boundary(shape_, interior_.medium, path, rng, hit);
+  } else if constexpr (Body::inside.half_space) {
+    // In the half space below the point where it entered, to leave at that very point.
+    const Frame frame(path.n);
+    Particle below{{}, frame.to_local(path.d), path.length};
+    walk_to_boundary(HalfSpace{}, interior_.medium, below, rng, hit);
+    path.d = frame.to_world(below.d);
+    path.length = below.length;
+    hit.p = path.p;
+    hit.n = path.n;
+    return true;
+  } else {
+    return shape_.exit(path.p, path.d, infinity, hit);
+  }
+}
+
+template <class Body>
+template <class Place>
+bool Tracer<Body>::walk_to_boundary(const Place& place, const Medium& medium, Particle& particle,
+                                    Rng& rng, Hit& hit) {
+  auto&& around = surroundings(place, medium);
+  ++tile_.counters.flights;
+  while (fly(around, medium, particle, rng, hit)) {
+    ++tile_.counters.flights;
+    if (strayed(place, particle)) return false;
+    scatter(around, medium, particle, rng);
+  }
+  return true;
+}
+
+template <class Body>
+void Tracer<Body>::follow_unscattered(Path path) {
+  Path scattered;
+  double scattered_weight = 0;
+  Rng& rng = path.sampler.rng();
+  while (true) {
+    Hit hit;
+    if (!shape_.exit(path.p, path.d, infinity, hit)) {
+      collector_.give_up(path);
+      break;
+    }
+    if constexpr (Body::inside.scatters) {
+      const double sigma_s = interior_.medium.sigma_s;
+      const double deflected = -std::expm1(-sigma_s * hit.t);
+      const double weight = path.weight * deflected;
+      scattered_weight += weight;
+      ++tile_.counters.flights;
+      if (rng.uniform() * scattered_weight < weight) {
+        const double s = -std::log1p(-rng.uniform() * deflected) / sigma_s;
+        scattered = path;
+        scattered.p = path.p + std::fmin(s, hit.t) * path.d;
+        scattered.length += std::fmin(s, hit.t);
+      }
+      path.weight *= std::exp(-sigma_s * hit.t);
+      if (!path.survives()) break;
+    }
+    arrive_inside(path, hit);
+    if (!count_event(path)) break;
+    if (traps(path)) {
+      scattered_weight += path.weight;
+      if (rng.uniform() * scattered_weight < path.weight) {
+        scattered = path;
+        roll(scattered);
+      }
+      break;
+    }
+    leave_smooth(path);
+    if (!path.survives()) break;
+  }
+  if constexpr (Body::inside.scatters)
+    if (scattered_weight > 0) start_walks(scattered, scattered_weight, path.sampler);
+}
+
+template <class Body>
+void Tracer<Body>::start_walks(const Path& scattered, double weight, PathSampler& sampler) {
+  const int walks = interior_.medium.sigma_s < short_walk_sigma_s ? 2 : 1;
+  for (int i = 0; i < walks; ++i) {
+    Path path = scattered;
+    path.weight = weight / walks;
+    // Its own numbers from here on: those that it was copied with have decided over others since.
+    path.sampler = sampler.split();
+    if (!path.survives()) continue;
+    path.roulette = roulette_of_scattered * path.weight;
+    collector_.note("scatter", path);
+    connector_.start(path);
+    collide(path);
+    walking_.push_back(path);
+  }
+}
+
+template <class Body>
+void Tracer<Body>::collide(Path& path) {
+  if constexpr (Body::walks_together)
+    path.colliding = true;
+  else
+    scatter(shape_, interior_.medium, path, path.sampler.rng());
+}
+
+template <class Body>
+void Tracer<Body>::arrive_inside(Path& path, const Hit& hit) {
+  path.length += hit.t;
+  path.p = hit.p;
+  path.n = hit.n;
+  collector_.note("boundary", path);
+}
+
+}  // namespace translucube
