@@ -89,7 +89,7 @@ auto answer_after(Endpoints& endpoints, int seconds, bool& waited, Get get, Done
   const Place place(endpoints.waiting, endpoints.catalog.server.waiting_requests);
   if (!place.got()) return result;
   waited = true;
-  endpoints.service.watch(std::chrono::seconds(seconds), [&] {
+  endpoints.service.changes().watch(std::chrono::seconds(seconds), [&] {
     result = get();
     return !result || done(*result);
   });
