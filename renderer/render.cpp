@@ -201,6 +201,11 @@ std::string explain_sample(const Scene& scene, int x, int y, std::uint32_t sampl
 
 std::string transport_name(const Scene& scene) { return transport_name(scene.interior); }
 
+std::optional<ExplorableBasis> explorable_basis(const Scene& scene) {
+  if (!scene.spread) return std::nullopt;
+  return ExplorableBasis{scene.spread->bins(), scene.unit_mm, scene.lanes.front()};
+}
+
 ExplorableFilm explorable_film(const Scene& scene, const Film& film) {
   return explorable_film(scene.spread.value().bins(), scene.unit_mm, film);
 }

@@ -13,8 +13,10 @@
 #include <string_view>
 #include <variant>
 
+#include "renderer/film/absorption.h"
 #include "renderer/film/explorable.h"
 #include "renderer/film/film.h"
+#include "renderer/film/length_bins.h"
 #include "renderer/scene/spec.h"
 
 namespace translucube {
@@ -86,6 +88,16 @@ RenderResult render(const Scene& scene, const Quality& quality, int threads = 0,
 
 /// Stats of a film rendered by any means.
 RenderStats stats_of(const Scene& scene, const Film& film, double seconds, int threads);
+
+/// How the film of an explorable scene is read: what its lanes stand for, and the absorber of the
+/// scene's own material.
+struct ExplorableBasis {
+  LengthBins bins;
+  double unit_mm = 1;
+  Lane own;
+};
+/// Empty where the scene is not explorable.
+std::optional<ExplorableBasis> explorable_basis(const Scene& scene);
 
 /// What is kept of an explorable scene's film.
 ExplorableFilm explorable_film(const Scene& scene, const Film& film);

@@ -26,9 +26,9 @@ set(rooms
   "api:"
 
   "server/base: api/base picture"
-  "server/store: server/base api/base api/request renderer renderer/film server/store/sqlite"
+  "server/store: server/base api/base api/request api/answer renderer renderer/film server/store/sqlite"
   "server/store/sqlite: server/base server/store api/answer"
-  "server/pictures: server/base server/store api/base api/request api/answer renderer renderer/film picture picture/sheet"
+  "server/pictures: server/base server/store api/base api/request api/answer renderer renderer/base renderer/film picture picture/sheet"
   "server/worker: server/base server/store server/pictures api/base api/request api/answer renderer renderer/base renderer/film renderer/light picture"
   "server/service: server/base server/store server/pictures server/worker api/base api/request api/answer picture"
   "server/http: server/base api/base picture"

@@ -2,33 +2,27 @@
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <fstream>
 
 #include "picture/exr/exr.h"
+#include "picture/file_sink.h"
 #include "picture/image_io_rules.h"
 #include "picture/version.h"
 
 namespace translucube {
 namespace {
 
-/// Writes to a file through a small buffer and remembers the first error: OpenEXR writes its last
-/// bytes in a destructor, which tells nobody. finish() does.
-class FileSink final : public Imf::OStream {
+/// Writes to a sink through a small buffer.
+class BufferedStream final : public Imf::OStream {
  public:
-  explicit FileSink(const std::filesystem::path& file)
-      : OStream(file.c_str()),
-        descriptor_(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) error_number_ = errno;
-  }
-  ~FileSink() override { finish(); }
-  FileSink(const FileSink&) = delete;
-  FileSink& operator=(const FileSink&) = delete;
+  BufferedStream(const std::filesystem::path& file, FileSink& sink)
+      : OStream(file.c_str()), sink_(sink) {}
+  ~BufferedStream() override { flush(); }
+  BufferedStream(const BufferedStream&) = delete;
+  BufferedStream& operator=(const BufferedStream&) = delete;
 
   void write(const char bytes[], int count) override {
     buffer_.append(bytes, static_cast<std::size_t>(count));
@@ -40,34 +34,18 @@ class FileSink final : public Imf::OStream {
     start_ = position;
   }
 
-  /// 0 if every byte was handed to the system, else the errno of the first failure.
-  int finish() {
-    flush();
-    if (descriptor_ >= 0 && ::close(descriptor_) != 0 && error_number_ == 0) error_number_ = errno;
-    descriptor_ = -1;
-    return error_number_;
-  }
-
  private:
   static constexpr std::size_t most_buffered = 1 << 16;
 
   void flush() {
-    for (std::size_t done = 0; error_number_ == 0 && done < buffer_.size();) {
-      const ssize_t put = ::pwrite(descriptor_, buffer_.data() + done, buffer_.size() - done,
-                                   static_cast<off_t>(start_ + done));
-      if (put > 0)
-        done += static_cast<std::size_t>(put);
-      else if (errno != EINTR)
-        error_number_ = put < 0 ? errno : EIO;
-    }
+    sink_.write(start_, buffer_.data(), buffer_.size());
     start_ += buffer_.size();
     buffer_.clear();
   }
 
-  int descriptor_;
+  FileSink& sink_;
   std::uint64_t start_ = 0;  ///< of the buffer in the file
   std::string buffer_;
-  int error_number_ = 0;
 };
 
 void check_header(const std::filesystem::path& file, const Imf::Header& header) {
@@ -118,7 +96,8 @@ void write_exr_file(const std::filesystem::path& file, const Imf::Header& header
   FileSink sink(file);
   std::string problem;
   try {
-    Imf::OutputFile output(sink, header, 0);
+    BufferedStream stream(file, sink);
+    Imf::OutputFile output(stream, header, 0);
     write(output);
   } catch (const std::bad_alloc&) {
     throw;

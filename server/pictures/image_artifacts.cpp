@@ -89,6 +89,17 @@ void write_form(const std::filesystem::path& file, Image image, const ImageForm&
   write_image(file, image, form.format, metadata);
 }
 
+void write_picture(ArtifactStore& artifacts, const std::string& folder, const std::string& name,
+                   const std::function<void(const std::filesystem::path&)>& writer) {
+  artifacts.write(folder, name, [&](const std::filesystem::path& temporary) {
+    try {
+      writer(temporary);
+    } catch (const ImageError& error) {
+      throw FileError(error.what());
+    }
+  });
+}
+
 void remove_files(ArtifactStore& artifacts, const StoredResult& result) {
   for (const std::string& name : artifacts.names(result.content))
     if (name == result.image || name == explorable_name(result.image) ||
@@ -125,12 +136,8 @@ Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
   const auto checked = image_form(query, colors.displays());
   if (!checked) return checked.problem();
   const auto& form = *checked;
-  std::optional<api::Redeveloped> redeveloped;
-  if (query.redevelopment.asked()) {
-    auto made = api::redevelop(request, query.redevelopment, catalog);
-    if (!made) return made.problem();
-    redeveloped = *std::move(made);
-  }
+  const auto redeveloped = redevelopment_of(request, query, catalog);
+  if (!redeveloped) return redeveloped.problem();
   const Problem gone{ProblemCode::gone,
                      "The picture was removed to make room; the same request makes it again.",
                      {}};
@@ -138,8 +145,8 @@ Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
   if (!result) return gone;
   store.touch_result(content);
   const std::string& original = result->image;
-  if (redeveloped) try {
-      return redeveloped_image(darkroom, *result, *redeveloped, form);
+  if (*redeveloped) try {
+      return redeveloped_image(darkroom, *result, **redeveloped, form);
     } catch (const ImageError& error) {
       spdlog::error("result {}: {}", content, error.what());
       forget(darkroom, *result);
@@ -153,12 +160,8 @@ Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
     file = artifacts.open(content, artifact);  // another request may have made it meanwhile
     if (!file) try {
         Image image = read_image(artifacts.path(content, original));
-        artifacts.write(content, artifact, [&](const std::filesystem::path& temporary) {
-          try {
-            write_form(temporary, std::move(image), form, colors, request);
-          } catch (const ImageError& error) {
-            throw FileError(error.what());
-          }
+        write_picture(artifacts, content, artifact, [&](const std::filesystem::path& temporary) {
+          write_form(temporary, std::move(image), form, colors, request);
         });
         store.resize_result(content, artifacts.bytes(content));
         file = artifacts.open(content, artifact);

@@ -46,6 +46,11 @@ api::Result<ImageForm> image_form(const ImageQuery& query, const std::vector<Dis
 void write_form(const std::filesystem::path& file, Image image, const ImageForm& form,
                 const ColorConfig& colors, const std::string& canonical_request);
 
+/// Writes an artifact by an image writer, whose ImageError the disk is to blame for. Throws
+/// FileError.
+void write_picture(ArtifactStore& artifacts, const std::string& folder, const std::string& name,
+                   const std::function<void(const std::filesystem::path&)>& writer);
+
 struct ImageFile {
   std::shared_ptr<const OpenFile> file;
   std::string mime_type;
