@@ -8,9 +8,10 @@ using api::Problem;
 using api::ProblemCode;
 using api::Result;
 
-constexpr const char* what_there_is =
-    "An image can be had as image/png, image/x-exr, image/tiff or image/jpeg "
-    "(?format=png, exr, tiff, jpeg).";
+std::string what_there_is() {
+  return "An image can be had as " + list_formats(&ImageFormatRow::mime_type, " or ") +
+         " (?format=" + list_formats(&ImageFormatRow::name, ", ") + ").";
+}
 
 HttpResponse with_headers_of(const ImageFile& image, HttpResponse response) {
   response.headers.insert(response.headers.end(), {{"ETag", image.etag},
@@ -53,10 +54,7 @@ Result<ImageQuery> image_query(const HttpRequest& request) {
   for (const auto& [name, value] : request.query) {
     if (name == "format") {
       format_given = true;
-      // Names only: image_format also takes file extensions.
-      for (const ImageFormat known :
-           {ImageFormat::png, ImageFormat::exr, ImageFormat::tiff, ImageFormat::jpeg})
-        if (value == translucube::name(known)) format = known;
+      if (const auto known = format_named(value)) format = known;
     }
     if (name == "display") query.display = value;
     if (name == "view") query.view = value;
@@ -79,7 +77,7 @@ Result<ImageQuery> image_query(const HttpRequest& request) {
     }
   }
   if (!format_given) format = negotiate_image(request.header("accept"));
-  if (!format) return Problem{ProblemCode::not_acceptable, what_there_is, {}};
+  if (!format) return Problem{ProblemCode::not_acceptable, what_there_is(), {}};
   query.format = *format;
   return query;
 }

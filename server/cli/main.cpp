@@ -2,6 +2,7 @@
 #include <charconv>
 #include <iostream>
 
+#include "picture/image_format.h"
 #include "server/cli/appearance.h"
 #include "server/cli/verbs.h"
 
@@ -25,6 +26,8 @@ int main(int argc, char** argv) {
   CLI::App app("Renders translucent materials and serves the pictures.", "translucube");
   app.set_version_flag("--version", "translucube " TRANSLUCUBE_VERSION);
   app.require_subcommand(1);
+  const std::string for_displays =
+      "For " + translucube::list_display_formats(&translucube::ImageFormatRow::title, " and ");
 
   RenderOptions render;
   std::string pixel;
@@ -33,8 +36,10 @@ int main(int argc, char** argv) {
       ->required();
   CLI::Option* outputs = render_verb
                              ->add_option("-o,--output", render.outputs,
-                                          "A picture: .exr, .png, .tiff or .jpeg; "
-                                          "may be given several times")
+                                          "A picture: " +
+                                              translucube::list_formats(
+                                                  &translucube::ImageFormatRow::extension, " or ") +
+                                              "; may be given several times")
                              ->expected(1)
                              ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   render_verb->add_option("--stats", render.stats, "Writes samples, seconds, error, ... as JSON");
@@ -43,8 +48,8 @@ int main(int argc, char** argv) {
   render_verb->add_option("--threads", render.threads, "At most this many threads; 0: all cores")
       ->check(CLI::Range(0, 4096));
   render_verb->add_option("--config", render.config, "Another service.json");
-  render_verb->add_option("--display", render.display, "For PNG, TIFF and JPEG");
-  render_verb->add_option("--view", render.view, "For PNG, TIFF and JPEG");
+  render_verb->add_option("--display", render.display, for_displays);
+  render_verb->add_option("--view", render.view, for_displays);
   CLI::Option* pixel_option = render_verb->add_option(
       "--pixel", pixel, "x,y: explains one sample of this pixel and renders nothing");
   render_verb->add_option("--sample", render.sample, "Which sample of the pixel")
@@ -78,8 +83,8 @@ int main(int argc, char** argv) {
   develop_verb->add_option("--threads", develop.threads, "At most this many threads; 0: all cores")
       ->check(CLI::Range(0, 4096));
   develop_verb->add_option("--config", develop.config, "Another service.json");
-  develop_verb->add_option("--display", develop.display, "For PNG, TIFF and JPEG");
-  develop_verb->add_option("--view", develop.view, "For PNG, TIFF and JPEG");
+  develop_verb->add_option("--display", develop.display, for_displays);
+  develop_verb->add_option("--view", develop.view, for_displays);
 
   AppearanceOptions appearance;
   CLI::App* appearance_verb = app.add_subcommand(
