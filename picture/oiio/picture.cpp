@@ -7,19 +7,21 @@
 
 #include "picture/oiio/codecs.h"
 #include "picture/oiio/file.h"
+#include "picture/version.h"
 
 namespace translucube {
 namespace {
 
-/// Begins "Software", which with "ImageDescription" is all that survives in PNG, TIFF and JPEG
-/// alike.
-constexpr std::string_view software = "Translucube " TRANSLUCUBE_VERSION ", pixels in ";
+// Of PNG, TIFF and JPEG only "ImageDescription" and "Software" survive in all three. The latter is
+// "Translucube <version>, pixels in <colour space>".
+constexpr std::string_view program = "Translucube ", pixels_in = ", pixels in ";
 
 ImageMetadata metadata_of(const OIIO::ImageSpec& spec) {
   const std::string_view writer = spec.get_string_attribute("Software");
-  if (!writer.starts_with(software)) return {};
+  const std::size_t end = writer.find(pixels_in);
+  if (!writer.starts_with(program) || end == writer.npos) return {};
   return {.request = std::string(spec.get_string_attribute("ImageDescription")),
-          .colorspace = std::string(writer.substr(software.size()))};
+          .colorspace = std::string(writer.substr(end + pixels_in.size()))};
 }
 
 /// Undoes the transfer curve that the file names. OpenImageIO names sRGB for PNG and JPEG that say
@@ -44,7 +46,8 @@ void set_metadata(OIIO::ImageSpec& spec, ImageFormat format, const ImageMetadata
   const bool room = metadata.request.size() <= row_of(format).longest_request;
   if (room && !metadata.request.empty())  // an empty one trips an assertion of its IPTC writer
     spec.attribute("ImageDescription", metadata.request);
-  spec.attribute("Software", std::string(software) + metadata.colorspace);
+  spec.attribute("Software", std::string(program) + std::string(project_version()) +
+                                 std::string(pixels_in) + metadata.colorspace);
   // OpenImageIO would write the time of day: the same picture has the same bytes.
   spec.attribute("DateTime", "");
 }
