@@ -102,9 +102,9 @@ struct Random {
     drawn = hn::Add(drawn, hn::Set(DU(), 0x9e3779b9u));
     return mix(hn::Add(mix(hn::Add(drawn, key_low)), key_high));
   }
-  /// In [0, 1).
+  /// A number in [0, 1).
   HWY_INLINE Real uniform() { return scaled(hn::ShiftRight<8>(bits())); }
-  /// In (0, 1].
+  /// A number in (0, 1].
   HWY_INLINE Real uniform_positive() {
     return scaled(hn::Add(hn::ShiftRight<8>(bits()), hn::Set(DU(), 1)));
   }

@@ -16,7 +16,7 @@ struct EnvironmentBatch {
   Floats x, y, z;                                ///< in: unit directions
   std::array<EnvironmentValue, capacity> value;  ///< out
 
-  /// Of value_from(), in single precision.
+  /// The values of value_from(), in single precision.
   void look_up(const ImageEnvironment& environment);
 };
 

@@ -1,28 +1,23 @@
+#include "picture/exr/file.h"
+
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
-#include <array>
 #include <cstring>
-#include <fstream>
 
-#include "picture/exr/exr.h"
-#include "picture/file_sink.h"
-#include "picture/image_io_rules.h"
+#include "picture/output_file.h"
 #include "picture/version.h"
 
 namespace translucube {
 namespace {
 
-/// Writes to a sink through a small buffer.
-class BufferedStream final : public Imf::OStream {
+/// Gathers what OpenEXR writes in a small buffer.
+class BufferedFile final : public Imf::OStream {
  public:
-  BufferedStream(const std::filesystem::path& file, FileSink& sink)
-      : OStream(file.c_str()), sink_(sink) {}
-  ~BufferedStream() override { flush(); }
-  BufferedStream(const BufferedStream&) = delete;
-  BufferedStream& operator=(const BufferedStream&) = delete;
+  BufferedFile(const std::filesystem::path& name, OutputFile& file)
+      : OStream(name.c_str()), file_(file) {}
 
   void write(const char bytes[], int count) override {
     buffer_.append(bytes, static_cast<std::size_t>(count));
@@ -33,17 +28,16 @@ class BufferedStream final : public Imf::OStream {
     flush();
     start_ = position;
   }
-
- private:
-  static constexpr std::size_t most_buffered = 1 << 16;
-
   void flush() {
-    sink_.write(start_, buffer_.data(), buffer_.size());
+    file_.write(buffer_.data(), buffer_.size(), static_cast<std::int64_t>(start_));
     start_ += buffer_.size();
     buffer_.clear();
   }
 
-  FileSink& sink_;
+ private:
+  static constexpr std::size_t most_buffered = 1 << 16;
+
+  OutputFile& file_;
   std::uint64_t start_ = 0;  ///< of the buffer in the file
   std::string buffer_;
 };
@@ -60,13 +54,6 @@ void check_header(const std::filesystem::path& file, const Imf::Header& header) 
 }
 
 }  // namespace
-
-bool is_exr(const std::filesystem::path& file) {
-  constexpr std::array<char, 4> magic = {0x76, 0x2f, 0x31, 0x01};
-  std::array<char, 4> start{};
-  std::ifstream in(file, std::ios::binary);
-  return in.read(start.data(), start.size()) && start == magic;
-}
 
 void read_exr_file(const std::filesystem::path& file,
                    const std::function<void(Imf::InputFile&)>& read) {
@@ -93,12 +80,15 @@ Imf::Header exr_header(int width, int height, Imf::Compression compression) {
 
 void write_exr_file(const std::filesystem::path& file, const Imf::Header& header,
                     const std::function<void(Imf::OutputFile&)>& write) {
-  FileSink sink(file);
+  OutputFile sink(file);
+  BufferedFile stream(file, sink);
   std::string problem;
   try {
-    BufferedStream stream(file, sink);
-    Imf::OutputFile output(stream, header, 0);
-    write(output);
+    {
+      Imf::OutputFile output(stream, header, 0);
+      write(output);
+    }
+    stream.flush();
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
