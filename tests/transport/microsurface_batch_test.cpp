@@ -51,7 +51,7 @@ Estimate light_of(double alpha, double eta, bool from_outside, Vec3 wo, std::uin
         sum += lit.share[i] * lights.radiance[lit.light[i]].g;
       const MicrosurfaceBatch::Sent& sent = batch->sent();
       for (std::size_t i = 0; i < sent.size; ++i) {
-        const EnvironmentValue light = image.value_from({sent.x[i], sent.y[i], sent.z[i]});
+        const EnvironmentValue light = image.value_from(sent.direction[i]);
         const double sought = lights_each * light.pdf;
         sum += sent.weight[i] * light.radiance.g * sent.pdf[i] / (sent.pdf[i] + sought);
       }
@@ -104,7 +104,7 @@ TEST(MicrosurfaceBatch, SharesAreThoseOfTheScalarMicrosurface) {
           const auto offset = static_cast<std::uint32_t>(rng.bits());
           for (std::uint32_t k = 0; k < 8; ++k) {
             const std::uint32_t l = (offset + k * LightList::size / 8) % LightList::size;
-            const Vec3 wi{lights.x[l], lights.y[l], lights.z[l]};
+            const Vec3 wi = lights.direction[l];
             const LobeValue value = vertex.evaluate(wi);
             if ((wi.z > 0) == from_outside && value.f_cos > 0)
               share += value.f_cos / (8 * lights.pdf[l] + value.pdf);
