@@ -2,7 +2,8 @@
 #include <new>
 
 #include "api/request/redevelop.h"
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_develop.h"
+#include "renderer/film/explorable_file.h"
 #include "server/cli/outputs.h"
 #include "server/cli/verbs.h"
 

@@ -12,7 +12,7 @@
 
 #include "api/answer/render_status.h"
 #include "api/request/parse.h"
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_file.h"
 #include "server/base/file.h"
 #include "server/base/signals.h"
 #include "server/cli/input.h"

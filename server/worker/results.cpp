@@ -1,6 +1,8 @@
 #include "server/worker/results.h"
 
 #include "picture/image_io.h"
+#include "renderer/film/explorable_develop.h"
+#include "renderer/film/explorable_file.h"
 #include "server/pictures/image_artifacts.h"
 
 namespace translucube::server {
