@@ -214,14 +214,4 @@ Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int thr
   return develop_explorable(film, scene.lanes.front(), threads);
 }
 
-Image develop_shares(const Scene& scene, const Film& film) {
-  return develop_shares(scene.spread.value().bins(), film, scene.lanes.front());
-}
-
-Image develop_shares(const Scene& scene, const Film& film, const Absorber& absorber,
-                     double sigma_a_peak) {
-  return develop_shares(scene.spread.value().bins(), film,
-                        make_lane(absorber, sigma_a_peak * scene.unit_mm));
-}
-
 }  // namespace translucube

@@ -1,6 +1,5 @@
 #include "server/pictures/developed_image.h"
 
-#include "renderer/film/absorption.h"
 #include "renderer/film/explorable_develop.h"
 #include "renderer/film/explorable_file.h"
 #include "server/base/ids.h"
@@ -22,10 +21,9 @@ ImageFile unkept(const Darkroom& darkroom, Image image, const ImageForm& form,
 /// Through the absorber asked for, or the film's own.
 Image developed(const Film& film, const ExplorableBasis& basis,
                 const std::optional<api::Redeveloped>& redeveloped) {
-  if (!redeveloped) return develop_shares(basis.bins, film, basis.own);
+  if (!redeveloped) return develop_shares(basis, film);
   const Absorption& absorption = redeveloped->absorption;
-  return develop_shares(basis.bins, film,
-                        make_lane(absorption.absorber, absorption.sigma_a_peak * basis.unit_mm));
+  return develop_shares(basis, film, absorption.absorber, absorption.sigma_a_peak);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "renderer/film/explorable_develop.h"
 #include "renderer/film/film.h"
 #include "renderer/render.h"
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stop_token>
 
+#include "renderer/film/explorable_develop.h"
 #include "renderer/render.h"
 
 namespace translucube::server {

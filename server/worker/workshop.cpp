@@ -2,14 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
-#include <thread>
+#include "renderer/base/parallel.h"
 
 namespace translucube::server {
 
-int Workshop::cores() const {
-  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
+int Workshop::cores() const { return thread_count(threads); }
 
 void tidy(Workshop& workshop, const std::string& job_id) {
   const std::optional<Job> job = workshop.store.find(job_id);
