@@ -43,7 +43,7 @@ class SpectralLane {
     return apply_operator(table_.at(1 + sigma_a_peak_ * length), radiance);
   }
   double sigma_a_peak() const { return sigma_a_peak_; }
-  /// Over 1 + sigma_a_peak l.
+  /// The operators over 1 + sigma_a_peak l.
   const ColorOperatorTable& table() const { return table_; }
 
  private:

@@ -137,7 +137,7 @@ void find_bins(const BinSpread& spread, const ContributionBatch& batch, SpreadBa
     const Real w0 = choose(1, p * q * s * at_0, a * b * c * (-1.0f / 6)),
                w2 = choose(0, x * p * s * at_1, t * a * c * -0.5f),
                w3 = choose(0, x * p * q * at_2, t * a * b * (1.0f / 6));
-    const Real bin = choose(0, 1, node + float(ExplorableBins::before_nodes));
+    const Real bin = choose(0, 1, node + float(LengthBins::before_nodes));
     store(to_whole(bin), found.bin, i);
     store(w0, found.weights[0], i);
     store(Real(1) - (w0 + w2 + w3), found.weights[1], i);

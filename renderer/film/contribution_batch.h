@@ -4,7 +4,7 @@
 
 #include "renderer/base/batch.h"
 #include "renderer/film/absorption.h"
-#include "renderer/film/explorable.h"
+#include "renderer/film/length_bins.h"
 
 namespace translucube {
 

@@ -34,6 +34,7 @@ PictureSums::PictureSums(const std::vector<float>& sum, std::size_t size, bool s
 }
 
 void merge(Film& film, const PassFilm& pass) {
+  if (film.passes == 0) film = Film(pass.width, pass.height, pass.lanes, pass.shares);
   if (pass.width != film.width || pass.height != film.height || pass.lanes != film.lanes ||
       pass.shares != film.shares)
     throw std::invalid_argument("films of different shape cannot be merged");

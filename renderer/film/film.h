@@ -57,7 +57,8 @@ struct Film {
   Film(int width, int height, int lanes, bool shares = false);
 };
 
-/// Adds the next pass (pass.index == film.passes) (Chan et al. 1979, the pairwise update).
+/// Adds the next pass (pass.index == film.passes) (Chan et al. 1979, the pairwise update). A film
+/// without passes takes the shape of its first one.
 void merge(Film& film, const PassFilm& pass);
 
 /// The sums of the picture that errors refer to: those of lane 0, or of all lanes together where

@@ -1,5 +1,9 @@
 #pragma once
 
+// In this room stands where light comes from: environments (here), the backdrop behind a body
+// (backdrop.h), and the lights that paths look for (light_list.h). A light knows directions and
+// densities; it knows no body and no path.
+
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -24,7 +28,7 @@ struct EnvironmentSample {
   EnvironmentValue value;
 };
 
-/// Light with the same radiance from everywhere.
+/// An environment of the same radiance from everywhere.
 struct UniformEnvironment {
   Rgb radiance{1, 1, 1};
 };
@@ -32,7 +36,7 @@ struct UniformEnvironment {
 /// Which part of a map is seen: a plane behind the body hides what lies towards -z.
 enum class EnvironmentSide { all, front };
 
-/// Where a direction lies in a map.
+/// The place of a direction in a map.
 struct MapCoordinates {
   float x, y;       ///< in pixels, centres at halves
   float sin_theta;  ///< polar angle from +y
@@ -54,7 +58,7 @@ class ImageEnvironment {
     return seen(direction, value_at(coordinates(direction)));
   }
   EnvironmentSide side() const { return side_; }
-  /// The map's light there, whether it is hidden or not.
+  /// What the map has there, whether it is hidden or not.
   EnvironmentValue value_at(MapCoordinates at) const;
   MapGeometry geometry() const;
   /// Calls the pixels for value_at() into the cache.
@@ -62,8 +66,8 @@ class ImageEnvironment {
   /// Draws a direction in proportion to luminance times solid angle, a pixel cell at a time; nearby
   /// u.u give nearby directions, so that stratified numbers give stratified light.
   EnvironmentSample sample(Sample2 u) const;
-  /// Many of them, quickest where u.u ascends; what they read of a map larger than the caches is on
-  /// its way meanwhile. Directions in single precision.
+  /// Many directions, quickest where u.u ascends; what they read of a map larger than the caches is
+  /// on its way meanwhile. Directions in single precision.
   std::vector<EnvironmentSample> sample(std::span<const Sample2> u) const;
   Vec3 direction(MapCoordinates at) const;
   /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order

@@ -10,7 +10,7 @@ struct EnvironmentBatch : Batch<256> {
   Vectors direction;                             ///< in: unit
   std::array<EnvironmentValue, capacity> value;  ///< out
 
-  /// value_from() for all, in single precision.
+  /// The values of value_from(), in single precision.
   void look_up(const ImageEnvironment& environment);
 };
 

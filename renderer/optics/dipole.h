@@ -78,7 +78,8 @@ class DipoleRadii {
   double sample(double u) const { return profile_.sample(u, reach_); }
 
  private:
-  /// In units of the body; the intersection of single-precision meshes tells no more apart.
+  /// Radii below this are not told apart, in units of the body: the intersection of
+  /// single-precision meshes is no better.
   static constexpr double smallest_radius = 1e-8;
 
   DipoleProfile profile_;

@@ -63,7 +63,7 @@ struct Side {
     const Real p = (eta * cos_o - cos_t) / fma(eta, cos_o, cos_t);
     return {select(cos2_t > 0, Real(0.5f) * fma(s, s, p * p), 1), cos_t};
   }
-  /// The direction of w beyond a facet with normal m; w_m = dot(w, m).
+  /// The direction of w refracted by a facet with normal m; w_m = dot(w, m).
   HWY_INLINE Vector refract(Vector w, Vector m, Real w_m, Real cos_t) const {
     return fma(fms(w_m, inverse_eta, cos_t), m, -(inverse_eta * w));
   }

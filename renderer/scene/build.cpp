@@ -84,7 +84,8 @@ Environment make_environment(const EnvironmentSpec& spec, EnvironmentSide side,
   }
 }
 
-/// Of all that is developed from one tracing: a body that one of them leaves open is traced open.
+/// The least absorption of all that is developed from one tracing: a body that one of them leaves
+/// open is traced open.
 double least_absorption(const SceneSpec& spec) {
   if (spec.explorable) return 0;
   double least = spec.material.coefficients.sigma_a_peak;
@@ -165,7 +166,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   if (spec.explorable) {
     const auto* walk = std::get_if<ScatteringInterior>(&scene->interior);
     scene->spread = BinSpread(
-        explorable_bins(spec.explorable->densest_sigma_a * unit, walk ? walk->medium.sigma_s : 0));
+        length_bins(spec.explorable->densest_sigma_a * unit, walk ? walk->medium.sigma_s : 0));
   }
   return scene;
 }

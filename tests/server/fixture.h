@@ -12,10 +12,13 @@
 #include <string>
 #include <thread>
 
+#include "api/base/config_file.h"
 #include "api/request/catalog.h"
 #include "picture/color.h"
 #include "renderer/film/film_error.h"
 #include "server/base/file.h"
+#include "server/base/places.h"
+#include "server/base/server_config.h"
 #include "server/service/job_service.h"
 #include "server/store/artifact_store.h"
 #include "server/store/data_folder.h"
@@ -46,19 +49,7 @@ struct FakeRenderer {
   std::function<void(const SceneSpec&)> before_build = [](const SceneSpec&) {};
 
   Engine engine() {
-    return {[this](const SceneSpec& spec) { return build(spec); },
-            [this](const Scene& scene, const Pass& pass, int, std::stop_token stop) {
-              return trace(scene, pass, stop);
-            },
-            [](const Scene&, const Film& film, double seconds, int threads) {
-              RenderStats stats;
-              stats.samples = film.samples;
-              stats.seconds = seconds;
-              stats.threads = threads;
-              stats.relative_error = relative_error(film);
-              stats.transport = "walk";
-              return stats;
-            }};
+    return [this](const SceneSpec& spec) { return build(spec); };
   }
 
  private:
@@ -67,16 +58,28 @@ struct FakeRenderer {
     std::uint64_t seed;
   };
 
-  std::shared_ptr<const Scene> build(const SceneSpec& spec) {
+  TracedScene build(const SceneSpec& spec) {
     ++builds;
     before_build(spec);
-    const auto picture = std::make_shared<Picture>(Picture{
-        spec.width, spec.height, 1 + static_cast<int>(spec.more_absorptions.size()), spec.seed});
-    return {picture, reinterpret_cast<const Scene*>(picture.get())};
+    const Picture picture{spec.width, spec.height,
+                          1 + static_cast<int>(spec.more_absorptions.size()), spec.seed};
+    return {[this, picture](const Pass& pass, int, std::stop_token stop) {
+              return trace(picture, pass, stop);
+            },
+            stats_of_fake, std::nullopt};
   }
 
-  std::optional<PassFilm> trace(const Scene& scene, const Pass& pass, std::stop_token stop) {
-    const auto& picture = reinterpret_cast<const Picture&>(scene);
+  static RenderStats stats_of_fake(const Film& film, double seconds, int threads) {
+    RenderStats stats;
+    stats.samples = film.samples;
+    stats.seconds = seconds;
+    stats.threads = threads;
+    stats.relative_error = relative_error(film);
+    stats.transport = "walk";
+    return stats;
+  }
+
+  std::optional<PassFilm> trace(const Picture& picture, const Pass& pass, std::stop_token stop) {
     const int now = ++tracing;
     int most = most_tracing;
     while (now > most && !most_tracing.compare_exchange_weak(most, now)) {
@@ -117,12 +120,14 @@ struct ServiceOptions {
 class TestService {
  public:
   TestService(const std::filesystem::path& folder, Engine engine, ServiceOptions options = {})
-      : catalog(configured(options)),
+      : catalog(api::load_catalog(config_path)),
+        config(configured(options)),
         colors(catalog.display_config),
         data(folder),
-        store(data.store_file(), options.store),
+        own_store(open_job_store(data.store_file(), options.store)),
+        store(*own_store),
         artifacts(data.artifacts()),
-        service(catalog, colors, store, artifacts, metrics, std::move(engine)) {}
+        service(catalog, config, colors, store, artifacts, metrics, std::move(engine)) {}
 
   api::RenderStatus submit(const std::string& document, std::optional<std::string> key = {}) {
     auto result = service.submit(document, key);
@@ -135,7 +140,7 @@ class TestService {
 
   api::RenderStatus wait(const std::string& id, int seconds = 120) {
     auto result = service.get(id);
-    service.watch(std::chrono::seconds(seconds), [&] {
+    service.changes().watch(std::chrono::seconds(seconds), [&] {
       result = service.get(id);
       return !result || api::is_end(result->state);
     });
@@ -164,21 +169,31 @@ class TestService {
   std::string content(const std::string& id) { return store.pictures(id).at(0).content; }
 
   api::Catalog catalog;
+  ServerConfig config;
   ColorConfig colors;
   DataFolder data;
-  JobStore store;
+  std::unique_ptr<JobStore> own_store;
+  JobStore& store;
   ArtifactStore artifacts;
   Metrics metrics;
   JobService service;
 
  private:
-  static api::Catalog configured(const ServiceOptions& options) {
-    api::Catalog catalog = api::load_catalog(config_path);
-    catalog.server.workers = options.workers;
-    catalog.server.threads_per_worker = 1;
-    return catalog;
+  static ServerConfig configured(const ServiceOptions& options) {
+    api::ConfigFile file(config_path);
+    ServerConfig config = read_server_config(file);
+    config.workers = options.workers;
+    config.threads_per_worker = 1;
+    return config;
   }
 };
+
+/// Takes places until so many are left; they are given back with what this gives.
+inline std::vector<Places::Place> take_all_but(int left, Places& places) {
+  std::vector<Places::Place> taken;
+  while (places.free() > left) taken.push_back(places.take());
+  return taken;
+}
 
 /// Waits until `done`, or for long even on a busy machine under a sanitizer; says which.
 inline bool eventually(const std::function<bool()>& done) {

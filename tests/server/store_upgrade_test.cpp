@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "picture/image_io.h"
-#include "server/store/sqlite/job_store_sqlite.h"
+#include "server/store/sqlite/connection.h"
 #include "tests/server/fixture.h"
 #include "tests/support/repository.h"
 

@@ -68,6 +68,14 @@ inline ImageEnvironment half_space_light(bool above) {
   return ImageEnvironment(image, 0, 1);
 }
 
+/// A rough, scattering sphere under half a sky, small.
+inline Scene half_lit_sphere() {
+  Scene scene = body(Sphere{}, material(1.5, 0.2, 3));
+  scene.environment = half_space_light(true);
+  look_from_afar(scene, 1.2, 40);
+  return scene;
+}
+
 /// Many passes of few samples, so that the spread between them tells the error.
 inline Film trace(const Scene& scene, std::uint32_t samples, int threads = 0) {
   return render(scene, SampleTarget{samples}, threads).film;
