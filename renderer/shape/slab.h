@@ -13,7 +13,7 @@ struct Slab {
   bool inside(Vec3 p) const { return std::fabs(p.z) < 0.5; }
   double clearance(Vec3 p) const { return 0.5 - std::fabs(p.z); }
 
-  bool enter(Vec3 p, Vec3 d, Hit& hit) const {
+  bool intersect_outside(Vec3 p, Vec3 d, Hit& hit) const {
     const double side = std::copysign(0.5, p.z);
     if (p.z * d.z >= 0) return false;
     hit.t = (side - p.z) / d.z;
@@ -22,7 +22,7 @@ struct Slab {
     return true;
   }
 
-  bool exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
+  bool intersect_inside(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
     if (std::fabs(p.z + t_max * d.z) < 0.5) return false;
     if (d.z == 0) return false;  // along the plate for ever
     const double side = std::copysign(0.5, d.z);

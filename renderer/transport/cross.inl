@@ -30,7 +30,8 @@ void Tracer<Body>::cross_rough(bool from_outside) {
       const Vec3 direction{lights_.x[lit.light[i]], lights_.y[lit.light[i]],
                            lights_.z[lit.light[i]]};
       Hit hit;
-      if (!shape_.convex() && shape_.enter(crossing_[lit.slot[i]].p, direction, hit)) continue;
+      if (!shape_.convex() && shape_.intersect_outside(crossing_[lit.slot[i]].p, direction, hit))
+        continue;
       found[lit.slot[i]] += lights_.radiance[lit.light[i]] * lit.share[i];
     }
     send_out(lights_each);

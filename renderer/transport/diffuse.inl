@@ -65,7 +65,7 @@ void Tracer<Body>::connect(Path& path, const Frame& frame, Evaluate&& evaluate) 
   const LobeValue value = evaluate(frame.to_local(light.direction));
   if (value.f_cos <= 0) return;
   Hit hit;
-  if (!shape_.convex() && shape_.enter(path.p, light.direction, hit)) return;
+  if (!shape_.convex() && shape_.intersect_outside(path.p, light.direction, hit)) return;
   collector_.note("connect", path);
   collector_.collect(path, light.value.radiance,
                      path.weight * value.f_cos / (light.value.pdf + value.pdf));

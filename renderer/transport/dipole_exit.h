@@ -79,10 +79,10 @@ DipoleExit sample_exit(const Shape& shape, const DipoleRadii& dipole, Vec3 origi
   Vec3 p = on_disc - 4.0 * axis;
   Hit hit;
   int crossings = 0;
-  while (shape.enter(p, axis, hit)) {
+  while (shape.intersect_outside(p, axis, hit)) {
     offer(hit);
     p = hit.p;
-    if (!shape.exit(p, axis, infinity, hit)) break;
+    if (!shape.intersect_inside(p, axis, infinity, hit)) break;
     offer(hit);
     p = hit.p;
     if (++crossings == most_crossings) {

@@ -15,7 +15,7 @@ void Tracer<Body>::enter() {
 template <class Body>
 void Tracer<Body>::arrive_outside(Path path) {
   Hit hit;
-  if (!shape_.enter(path.p, path.d, hit)) return escape(path);
+  if (!shape_.intersect_outside(path.p, path.d, hit)) return escape(path);
   path.p = hit.p;
   path.n = hit.n;
   collector_.note("enter", path);

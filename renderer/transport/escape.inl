@@ -77,12 +77,13 @@ void Tracer<Body>::leave_print(Path path) {
     const EnvironmentSample light = environment->sample(path.sampler.next2());
     ++tile_.counters.connections;
     const double cosine = light.direction.z;
-    if (cosine > 0 && light.value.pdf > 0 && !shape_.enter(path.p, light.direction, hit))
+    if (cosine > 0 && light.value.pdf > 0 &&
+        !shape_.intersect_outside(path.p, light.direction, hit))
       collector_.collect(path, light.value.radiance,
                          path.weight * cosine / (std::numbers::pi * light.value.pdf));
   }
   path.d = InterfacedLambertian::sample(path.sampler.next2());
-  if (shape_.enter(path.p, path.d, hit)) return go_back(path);
+  if (shape_.intersect_outside(path.p, path.d, hit)) return go_back(path);
   if (!environment)
     collector_.collect(path, std::get<UniformEnvironment>(scene_.environment).radiance,
                        path.weight);

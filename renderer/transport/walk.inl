@@ -73,7 +73,7 @@ bool Tracer<Body>::walk_alone(Path& path, Hit& hit) {
     hit.n = path.n;
     return true;
   } else {
-    return shape_.exit(path.p, path.d, infinity, hit);
+    return shape_.intersect_inside(path.p, path.d, infinity, hit);
   }
 }
 
@@ -98,7 +98,7 @@ void Tracer<Body>::follow_unscattered(Path path) {
   Rng& rng = path.sampler.rng();
   while (true) {
     Hit hit;
-    if (!shape_.exit(path.p, path.d, infinity, hit)) {
+    if (!shape_.intersect_inside(path.p, path.d, infinity, hit)) {
       collector_.give_up(path);
       break;
     }

@@ -48,11 +48,11 @@ std::vector<std::array<double, 2>> crossings(const S& shape, Vec3 from, Vec3 d) 
   Hit hit;
   double t = 0;
   Vec3 p = from;
-  while (shape.enter(p, d, hit)) {
+  while (shape.intersect_outside(p, d, hit)) {
     EXPECT_LT(dot(hit.n, d), 0);
     const double in = t += hit.t;
     p = hit.p;
-    EXPECT_TRUE(shape.exit(p, d, 1e9, hit));
+    EXPECT_TRUE(shape.intersect_inside(p, d, 1e9, hit));
     EXPECT_GT(dot(hit.n, d), 0);
     t += hit.t;
     p = hit.p;
@@ -107,7 +107,8 @@ TEST(Objects, KnowHowFarTheirSurfaceIsAtLeast) {
             EXPECT_GT(free, 0) << body.name;
             Hit hit;
             for (int i = 0; i < 20; ++i)
-              EXPECT_FALSE(shape.exit(p, sample_isotropic(rng), free * (1 - 1e-12), hit))
+              EXPECT_FALSE(
+                  shape.intersect_inside(p, sample_isotropic(rng), free * (1 - 1e-12), hit))
                   << body.name;
           }
         },

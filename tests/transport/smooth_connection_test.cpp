@@ -23,7 +23,7 @@ Vec3 random_direction(Rng& rng) { return sample_isotropic(rng); }
 /// Where a ray along d from p inside the unit sphere goes on outside; empty if it is trapped.
 std::optional<Vec3> leaves_along(double ior, Vec3 p, Vec3 d) {
   Hit hit;
-  if (!Sphere{}.exit(p, d, 1e9, hit)) return {};
+  if (!Sphere{}.intersect_inside(p, d, 1e9, hit)) return {};
   return refract(-d, -hit.n, 1 / ior);
 }
 
