@@ -36,8 +36,8 @@ void Tracer<Body>::return_dipole(Path& arriving) {
                       [](const DipoleColor& color) { return color.total(); });
   } else {
     u.u = (u.u - share_here) / (1 - share_here);
-    const DipoleExit from =
-        sample_exit(shape_, interior_.radii, path.p, path.n, u, path.sampler.rng());
+    const IncidentPoint from =
+        sample_incident_point(shape_, interior_.radii, path.p, path.n, u, path.sampler.rng());
     path.weight *= from.weight / interior_.radii.mass();
     arriving.sampler = path.sampler;
     if (from.lost) collector_.give_up(path);

@@ -44,7 +44,7 @@
 #include "renderer/optics/lambertian.h"
 #include "renderer/optics/microsurface_batch.h"
 #include "renderer/transport/collector.h"
-#include "renderer/transport/dipole_exit.h"
+#include "renderer/transport/incident_point.h"
 #include "renderer/transport/path.h"
 #include "renderer/transport/sphere/rough_connector.h"
 #include "renderer/transport/sphere/smooth_connector.h"

@@ -11,7 +11,7 @@
 
 #include "renderer/optics/fresnel.h"
 #include "renderer/optics/material_cube.h"
-#include "renderer/transport/dipole_exit.h"
+#include "renderer/transport/incident_point.h"
 #include "tests/support/chi2.h"
 #include "tests/support/meshes.h"
 #include "tests/support/repository.h"
