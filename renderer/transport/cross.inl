@@ -2,12 +2,15 @@
 
 namespace translucube {
 
+/// Lights that a collision with a microfacet looks for.
+inline constexpr std::uint32_t lights_of_a_collision = 8;
+
 template <class Body>
 void Tracer<Body>::await_crossing(const Path& path, bool from_outside) {
   crossing_.push_back(path);
   PathSampler& sampler = crossing_.back().sampler;
   microsurface_.push(from_outside ? path.n : -path.n, path.d, sampler.next2(), sampler.rng().bits(),
-                     Body::looks_for_light && !from_outside && path.vertex.phase > 0);
+                     Body::connects && !from_outside && path.vertex.phase > 0);
   if (crossing_.size() == MicrosurfaceBatch::capacity) cross_rough(from_outside);
 }
 
@@ -23,15 +26,13 @@ void Tracer<Body>::cross_rough(bool from_outside) {
   std::array<Rgb, MicrosurfaceBatch::capacity> found{};
   microsurface_.start(interface);
   while (microsurface_.under_way() > 0) {
-    tile_.counters.connections += lights_each * microsurface_.under_way();
+    tile_.counters.light_samples += lights_each * microsurface_.under_way();
     microsurface_.collide(interface, lights_, lights_each);
     const MicrosurfaceBatch::Lit& lit = microsurface_.lit();
     for (std::size_t i = 0; i < lit.size; ++i) {
       const Vec3 direction{lights_.x[lit.light[i]], lights_.y[lit.light[i]],
                            lights_.z[lit.light[i]]};
-      Hit hit;
-      if (!shape_.convex() && shape_.intersect_outside(crossing_[lit.slot[i]].p, direction, hit))
-        continue;
+      if (hides(crossing_[lit.slot[i]].p, direction)) continue;
       found[lit.slot[i]] += lights_.radiance[lit.light[i]] * lit.share[i];
     }
     send_out(lights_each);
@@ -66,7 +67,7 @@ void Tracer<Body>::send_out(std::uint32_t lights_each) {
   const MicrosurfaceBatch::Sent& sent = microsurface_.sent();
   const auto direction = [&](std::size_t i) { return Vec3{sent.x[i], sent.y[i], sent.z[i]}; };
   const float* ways = nullptr;
-  if constexpr (Body::looks_for_light) {
+  if constexpr (Body::connects) {
     for (std::size_t i = 0; i < sent.size; ++i)
       if (sent.connected[i] > 0)
         connector_.push_way(crossing_[sent.slot[i]], direction(i), sent.pdf[i]);

@@ -12,7 +12,7 @@ void Tracer<Body>::escape(const Path& path) {
   }
   if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
     return collector_.collect(path, uniform->radiance, path.weight);
-  if constexpr (Body::looks_for_light && Body::smooth)
+  if constexpr (Body::connects && Body::smooth)
     if (path.pdf == Path::found_by_connecting)
       return collector_.collect_carried(
           path.pixel, path.length, path.tint,
@@ -38,7 +38,7 @@ void Tracer<Body>::collect(Escapes& escapes) {
     Rgb radiance = light.radiance;
     if (from.pdf > 0 && scene_.next_event_estimation) {  // it was looked for as well
       const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
-      if constexpr (Body::looks_for_light && Body::smooth) {
+      if constexpr (Body::connects && Body::smooth) {
         const Rgb expected = connector_.expected(from.n, from.walk) * Connector::far_share;
         radiance = expected + (radiance - expected) * share;
       } else {
@@ -75,7 +75,7 @@ void Tracer<Body>::leave_print(Path path) {
   Hit hit;
   if (environment && scene_.next_event_estimation) {
     const EnvironmentSample light = environment->sample(path.sampler.next2());
-    ++tile_.counters.connections;
+    ++tile_.counters.light_samples;
     const double cosine = light.direction.z;
     if (cosine > 0 && light.value.pdf > 0 &&
         !shape_.intersect_outside(path.p, light.direction, hit))

@@ -2,6 +2,10 @@
 
 namespace translucube {
 
+/// In the dipole model, times that light may come back to the body from outside before its path is
+/// given up.
+inline constexpr std::uint32_t dipole_arrival_cap = 16;
+
 template <class Body>
 void Tracer<Body>::leave() {
   if constexpr (Body::lets_in) {

@@ -4,21 +4,32 @@
 // and the length travelled inside the body; absorption comes with the film's lanes. In stages, each
 // one loop over a queue of paths:
 //
-//   emit    camera samples                                                    tracer.h
-//   enter   rays outside: to where they hit the body, and a share goes in     enter.inl
-//   walk    flights inside, from scatterer to scatterer, to the boundary      walk.inl
-//   leave   paths inside at the boundary: a share goes out, the rest walks    leave.inl
-//   escape  what went out for good: to the environment or the backdrop        escape.inl
+//   emit    camera samples                                                  emit.inl
+//   enter   rays outside: to where they hit the body, and a share goes in   enter.inl
+//   walk    flights inside, from scatterer to scatterer, to the boundary    walk.inl
+//   leave   paths inside at the boundary: a share goes out, the rest walks  leave.inl
+//   escape  what went out for good: to the environment or the backdrop      escape.inl
 //
-// and between them, where the light
+// and between them, where light
 //
-//   crosses a rough interface, from microfacet to microfacet                  cross.inl
-//   comes back from a dense body, in all directions                           diffuse.inl
+//   crosses a rough interface, from microfacet to microfacet                cross.inl
+//   comes back in all directions: a Lambertian body, the dipole             diffuse.inl
 //
 // At a smooth boundary both branches are followed; the light that no particle deflects is
 // enumerated, not sampled, and one scattered path stands for all that is deflected on the way (a
 // reservoir of one: Chao 1982). Paths of small weight are played out by Russian roulette, so that
 // the branches in flight stay bounded.
+//
+// Light that differs between directions is found by escape, and looked for as well (next-event
+// estimation). It counts once: by the balance heuristic (Veach 1995), or because one of the two
+// ways leaves it to the other. Three estimators look for it:
+//
+//   direct light      where light goes out in all directions (Lambertian    diffuse.inl,
+//                     body, dipole, print): one light for each path         escape.inl
+//   microfacet light  at each collision with a microfacet, on either side   cross.inl
+//                     of the interface: eight lights of the tile's list
+//   connections       from scatterers in a sphere through its boundary,     walk.inl,
+//                     smooth or rough                                       sphere/*_connector.h
 //
 // What runs inside, by interior and shape:
 //
@@ -29,7 +40,7 @@
 //   Lambertian     return_diffuse()                     the same
 //   dense pigment  walk_alone() in a half space         the same
 //   scattering     walk_together(), in SIMD;            walk_alone(), in a mesh with a Clearing;
-//                  vertices look for light by           no light is looked for inside
+//                  vertices connect to lights by        nothing connects
 //                  SmoothConnector or RoughConnector
 
 #include <algorithm>
@@ -60,17 +71,10 @@ inline constexpr double roulette_of_clear = 1.0 / 64;
 inline constexpr double roulette_of_scattered = 1.0 / 4;
 /// The threshold inside a clear body under a rough interface, relative to the weight that went in.
 inline constexpr double roulette_of_rough = 1.0 / 8;
-/// Lights that a collision with a microfacet looks for.
-inline constexpr std::uint32_t lights_of_a_collision = 8;
-/// Below this scattering coefficient [1 / unit] a walk is so short that a camera sample starts two.
-inline constexpr double short_walk_sigma_s = 2;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
 /// light that is trapped gets there, for good (a camera inside a clear body) or, in a mesh, for
 /// nearly as long (a medium of millions of bounding radii to the mean free path).
 inline constexpr std::uint32_t clear_event_cap = 20'000, scattering_event_cap = 2'000'000;
-/// In the dipole model, times that light may come back to the body from outside, likewise.
-inline constexpr std::uint32_t dipole_arrival_cap = 16;
-
 /// One alternative of each part of a scene's body, and what follows from the three.
 template <class ShapeType, class InterfaceType, class InteriorType>
 struct Body {
@@ -89,9 +93,9 @@ struct Body {
   static constexpr bool walks_together = inside.scatters && std::is_same_v<Shape, Sphere>;
   /// Trapped light rolls from reflection to reflection in one step.
   static constexpr bool rolls = inside.scatters && std::is_same_v<Shape, Sphere>;
-  /// Scattering vertices look for light through the boundary: those that walks together report.
-  static constexpr bool looks_for_light = walks_together;
-  using Connector = std::conditional_t<!looks_for_light, NoConnector,
+  /// Scattering vertices connect to lights through the boundary: those that walks together report.
+  static constexpr bool connects = walks_together;
+  using Connector = std::conditional_t<!connects, NoConnector,
                                        std::conditional_t<smooth, SmoothConnector, RoughConnector>>;
 };
 
@@ -136,37 +140,17 @@ class Tracer {
   }
 
   Connector make_connector(const Scene& scene, std::uint64_t key) {
-    // Vertices look for light through one interface: where there are two, the walk finds it.
+    // Vertices connect through one interface: where there are two, the walk finds the light.
     static const LightList none;
-    if constexpr (Body::looks_for_light && !Body::smooth)
+    if constexpr (Body::connects && !Body::smooth)
       return Connector(scene, collector_, scene.oiled ? none : lights_);
     else
       return Connector(scene, collector_, key);
   }
 
-  void emit(std::uint32_t pass_index, std::uint32_t sample) {
-    for (int y = 0; y < tile_.height; ++y)
-      for (int x = 0; x < tile_.width; ++x) {
-        const int px = tile_.x0 + x, py = tile_.y0 + y;
-        const std::uint64_t pixel_key =
-            hash_combine(hash_combine(scene_.seed, pass_index),
-                         std::uint64_t(py) * std::uint64_t(scene_.width) + std::uint64_t(px));
-        Path path;
-        path.sampler = PathSampler(pixel_key, sample);
-        path.pixel = static_cast<std::uint32_t>(y * tile_.width + x);
-        path.roulette = roulette_of_clear;
-        const Sample2 u = path.sampler.next2();
-        path.p = scene_.camera.position;
-        path.d = scene_.camera.direction(px + u.u, py + u.v);
-        collector_.note("emit", path);
-        ++tile_.counters.camera_samples;
-        if (!scene_.camera_inside) {
-          entering_.push_back(path);
-        } else if constexpr (Body::inside.open) {
-          go_in(path);
-        }
-      }
-  }
+  // ---- emit.inl
+
+  void emit(std::uint32_t pass_index, std::uint32_t sample);
 
   // ---- enter.inl
 
@@ -225,10 +209,9 @@ class Tracer {
   /// What the body sends out at a point, of light that went in there or elsewhere: one sample for
   /// plastic's diffuse half and the dipole together (dipole.h).
   void return_dipole(Path& arriving);
-  /// Next-event estimation where light leaves in all directions: a direction of the environment,
-  /// weighted by the balance heuristic (Veach 1995) against those that the body samples itself.
-  template <class Evaluate>
-  void connect(Path& path, const Frame& frame, Evaluate&& evaluate);
+  /// Looks for a light of the environment, weighted by the balance heuristic against the directions
+  /// that the body samples itself.
+  void add_direct_light(Path& path, const Frame& frame, const InterfacedLambertian& base);
 
   // ---- escape.inl
 
@@ -251,6 +234,12 @@ class Tracer {
 
   // ---- at any boundary
 
+  /// Whether the body itself hides what lies along d from a point of its surface.
+  bool hides(Vec3 p, Vec3 d) const {
+    Hit hit;
+    return !shape_.convex() && shape_.intersect_outside(p, d, hit);
+  }
+
   bool is_smooth_at(const Path& path) const {
     return Body::smooth || (scene_.oiled && scene_.oiled->covers(path.p));
   }
@@ -269,7 +258,7 @@ class Tracer {
   const typename Body::Interior& interior_;
   Tile& tile_;
   Collector collector_;
-  LightList lights_;    ///< of the rough interface
+  LightList lights_;    ///< for microfacets
   bool may_come_back_;  ///< whether what leaves may arrive again
   Connector connector_;
   std::conditional_t<Body::walks_together, SphereWalk, std::monostate> sphere_walk_;
@@ -302,6 +291,7 @@ void trace_body(const Shape& shape, const Scene& scene, const SampleRange& sampl
 
 #include "renderer/transport/cross.inl"
 #include "renderer/transport/diffuse.inl"
+#include "renderer/transport/emit.inl"
 #include "renderer/transport/enter.inl"
 #include "renderer/transport/escape.inl"
 #include "renderer/transport/leave.inl"

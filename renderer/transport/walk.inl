@@ -2,6 +2,9 @@
 
 namespace translucube {
 
+/// Below this scattering coefficient [1 / unit] a walk is so short that a camera sample starts two.
+inline constexpr double short_walk_sigma_s = 2;
+
 template <class Body>
 void Tracer<Body>::walk() {
   if constexpr (Body::walks_together) {

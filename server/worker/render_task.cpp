@@ -122,7 +122,7 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
     const TraceCounters& counters = pass->counters;
     workshop_.metrics.count_pass(
         {task_seconds, counters.camera_samples,
-         counters.flights + counters.boundary_events + counters.connections, counters.nan_samples});
+         counters.flights + counters.boundary_events + counters.light_samples, counters.nan_samples});
   }
 
   if (!stored && task_seconds > seconds_between_checkpoints)

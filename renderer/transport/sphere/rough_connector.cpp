@@ -29,7 +29,7 @@ void RoughConnector::place(RoughExitBatch& batch, Vec3 p, double depth2, Vec3 d,
 }
 
 void RoughConnector::connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths) {
-  collector_.counters().connections += vertices.size;
+  collector_.counters().light_samples += vertices.size;
   for (std::size_t v = 0; v < vertices.size; ++v) {
     const Path& path = paths[vertices.slot[v]];
     const Vec3 p{vertices.p_x[v], vertices.p_y[v], vertices.p_z[v]},

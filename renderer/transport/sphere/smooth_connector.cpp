@@ -49,7 +49,7 @@ bool SmoothConnector::reaches_far(const SmoothExits& exits) const {
 }
 
 void SmoothConnector::connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths) {
-  collector_.counters().connections += vertices.size;
+  collector_.counters().light_samples += vertices.size;
   // The shortest of all ways out on the far branch begins at the radius 1 / ior.
   const bool far = medium_.sigma_s * std::sqrt(1 - 1 / (ior_ * ior_)) < longest_way;
   for (std::size_t i = 0; i < vertices.size; ++i) {

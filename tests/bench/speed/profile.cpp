@@ -141,7 +141,7 @@ Table by_instructions(Run& run) {
               {run.samples(32)}, 1, &counters)[0];
     const auto samples = static_cast<double>(counters.camera_samples);
     const double each =
-        static_cast<double>(counters.flights + counters.boundary_events + counters.connections) /
+        static_cast<double>(counters.flights + counters.boundary_events + counters.light_samples) /
         samples;
     const double time = 1e9 * timed.cpu_seconds / samples;
     if (counted <= 0) {
