@@ -10,7 +10,7 @@ void Tracer<Body>::await_crossing(const Path& path, bool from_outside) {
   crossing_.push_back(path);
   PathSampler& sampler = crossing_.back().sampler;
   microsurface_.push(from_outside ? path.n : -path.n, path.d, sampler.next2(), sampler.rng().bits(),
-                     Body::connects && !from_outside && path.vertex.phase > 0);
+                     Body::connects && !from_outside && path.vertex.connected());
   if (crossing_.size() == MicrosurfaceBatch::capacity) cross_rough(from_outside);
 }
 
@@ -42,7 +42,7 @@ void Tracer<Body>::cross_rough(bool from_outside) {
     collector_.collect(path, found[i], path.weight);
     if constexpr (Body::lets_in || Body::inside.diffuse) {
       path.weight *= microsurface_.inward_weight(i);
-      path.pdf = 0;
+      path.pdf = Path::not_looked_for;
       path.d = microsurface_.inward(i);
       if (path.weight > 0) go_on_inside(path, from_outside);
     }
@@ -76,7 +76,8 @@ void Tracer<Body>::send_out(std::uint32_t lights_each) {
   for (std::size_t i = 0; i < sent.size; ++i) {
     Path& path = crossing_[sent.slot[i]];
     const double pdf = sent.connected[i] > 0 ? *ways++ : sent.pdf[i] / lights_each;
-    go_out(path, direction(i), path.weight * sent.weight[i], lights_each > 0 ? pdf : 0);
+    go_out(path, direction(i), path.weight * sent.weight[i],
+           lights_each > 0 ? pdf : Path::not_looked_for);
   }
 }
 

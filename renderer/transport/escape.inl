@@ -8,7 +8,9 @@ void Tracer<Body>::escape(const Path& path) {
   if (scene_.backdrop && path.d.z < 0) {
     meet_backdrop(path);
     // Nothing of the environment, but a connection may have taken its share of nothing.
-    if (path.pdf == 0 || std::holds_alternative<UniformEnvironment>(scene_.environment)) return;
+    if (path.pdf == Path::not_looked_for ||
+        std::holds_alternative<UniformEnvironment>(scene_.environment))
+      return;
   }
   if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
     return collector_.collect(path, uniform->radiance, path.weight);
@@ -16,14 +18,14 @@ void Tracer<Body>::escape(const Path& path) {
     if (path.pdf == Path::found_by_connecting)
       return collector_.collect_carried(
           path.pixel, path.length, path.tint,
-          connector_.expected(path.n, path.walk) * static_cast<float>(path.weight));
+          connector_.expected(path.n, path.start) * static_cast<float>(path.weight));
   Escapes& escapes = escapes_[path.length > 0 ? 1 : 0];
   EnvironmentBatch& batch = escapes.batch;
   const std::size_t i = batch.size++;
   batch.x[i] = static_cast<float>(path.d.x);
   batch.y[i] = static_cast<float>(path.d.y);
   batch.z[i] = static_cast<float>(path.d.z);
-  escapes.from[i] = {path.n, path.length, path.weight, path.pdf, path.walk, path.pixel, path.tint};
+  escapes.from[i] = {path.n, path.length, path.weight, path.pdf, path.start, path.pixel, path.tint};
   if (batch.size == EnvironmentBatch::capacity) collect(escapes);
 }
 
@@ -36,10 +38,11 @@ void Tracer<Body>::collect(Escapes& escapes) {
     const Escape& from = escapes.from[i];
     const EnvironmentValue& light = batch.value[i];
     Rgb radiance = light.radiance;
-    if (from.pdf > 0 && scene_.next_event_estimation) {  // it was looked for as well
+    if (from.pdf != Path::not_looked_for &&
+        scene_.next_event_estimation) {  // it was looked for as well
       const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
       if constexpr (Body::connects && Body::smooth) {
-        const Rgb expected = connector_.expected(from.n, from.walk) * Connector::far_share;
+        const Rgb expected = connector_.expected(from.n, from.start) * Connector::far_share;
         radiance = expected + (radiance - expected) * share;
       } else {
         radiance = radiance * share;
@@ -62,7 +65,8 @@ void Tracer<Body>::meet_backdrop(const Path& path) {
   reflected.p = p;
   reflected.n = {0, 0, 1};
   reflected.weight *= value;
-  reflected.pdf = reflected.vertex.phase = 0;
+  reflected.pdf = Path::not_looked_for;
+  reflected.vertex = {};
   if (reflected.weight > 0) leave_print(reflected);
 }
 

@@ -33,7 +33,7 @@ void Tracer<Body>::leave_smooth(Path& path) {
   const double reflectance = fresnel(dot(path.d, path.n), 1 / interface_.ior);
   if (reflectance < 1) {
     const Vec3 out = *refract(-path.d, -path.n, 1 / interface_.ior);
-    double pdf = 0;
+    double pdf = Path::not_looked_for;
     if constexpr (Body::smooth) pdf = connector_.pdf(path);
     go_out(path, out, path.weight * (1 - reflectance), pdf);
   }

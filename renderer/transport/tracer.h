@@ -218,7 +218,7 @@ class Tracer {
   struct Escape {
     Vec3 n;
     double length, weight, pdf;
-    std::uint32_t walk, pixel, tint;
+    std::uint32_t start, pixel, tint;
   };
   struct Escapes {
     EnvironmentBatch batch;

@@ -31,7 +31,7 @@ void Tracer<Body>::walk_together() {
                                 std::min(SphereWalk::capacity, walking_.size() - first));
     for (std::size_t i = 0; i < paths.size(); ++i) {
       Path& path = paths[i];
-      const double depth2 = path.p == path.n ? 0 : std::fmax(0.0, 1 - length_squared(path.p));
+      const double depth2 = path.on_unit_sphere() ? 0 : std::fmax(0.0, 1 - length_squared(path.p));
       sphere_walk_.push(static_cast<std::uint32_t>(i), path.p, depth2, path.d, path.colliding,
                         path.sampler.rng().bits());
     }

@@ -39,7 +39,7 @@ void SmoothConnector::start(Path& path) {
   if (!active()) return;
   const double rho = length(path.p);
   const Vec3 axis = rho > 0 ? path.p * (1 / rho) : Vec3{0, 0, 1};
-  path.walk = static_cast<std::uint32_t>(walks_.size());
+  path.start = static_cast<std::uint32_t>(walks_.size());
   walks_.push_back({axis, environment_->irradiance_by_order(axis)});
   for (Rgb& order : walks_.back().expected) order = order * std::numbers::inv_pi_v<float>;
 }
@@ -63,7 +63,7 @@ void SmoothConnector::connect(const SphereWalk::Vertices& vertices, std::span<co
                     path.length + vertices.length[i], path.weight);
     SmoothExitBatch& near = near_.batch;
     if (near_alone()) {
-      const Vec3 axis = walks_[path.walk].axis;
+      const Vec3 axis = walks_[path.start].axis;
       near.axis_x[near.size] = static_cast<float>(axis.x);
       near.axis_y[near.size] = static_cast<float>(axis.y);
       near.axis_z[near.size] = static_cast<float>(axis.z);
@@ -85,17 +85,17 @@ void SmoothConnector::push(Queue& queue, const SphereWalk::Vertices& vertices, s
                            const Path& path, float weight, std::uint32_t light, Vec3 direction,
                            double pdf) {
   queue.waiting[queue.batch.size] = {path.length + vertices.length[i], weight, path.pixel,
-                                     path.walk, light};
+                                     path.start, light};
   queue.batch.push({vertices.p_x[i], vertices.p_y[i], vertices.p_z[i]}, vertices.depth2[i],
                    {vertices.d_x[i], vertices.d_y[i], vertices.d_z[i]}, direction, pdf);
 }
 
 double SmoothConnector::pdf(const Path& path) const {
   const Path::Vertex& from = path.vertex;
-  if (from.phase == 0) return 0;
+  if (!from.connected()) return Path::not_looked_for;
   const SmoothExits exits(ior_, from.p, from.depth2);
   const bool far = exits.is_far(path.d);
-  if (far && !reaches_far(exits)) return 0;
+  if (far && !reaches_far(exits)) return Path::not_looked_for;
   if (!far && near_alone()) return Path::found_by_connecting;
   return from.phase * std::exp(-medium_.sigma_s * from.flight) * exits.jacobian(path.d) /
          walk_medium().chance(from.depth2);
