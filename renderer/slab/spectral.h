@@ -19,7 +19,6 @@ struct SlabChannels {
   std::vector<std::vector<double>> readouts;
 
   std::size_t size() const { return sigma_a.size(); }
-  bool has_bands() const { return readouts.size() > 3; }
   /// All readouts of a quantity that is known for each channel.
   std::vector<double> read(const std::vector<double>& of_channels) const;
 };

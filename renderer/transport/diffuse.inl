@@ -58,7 +58,7 @@ void Tracer<Body>::add_direct_light(Path& path, const Frame& frame,
                                     const InterfacedLambertian& base) {
   const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
   // The same from everywhere: nothing to look for.
-  if (environment == nullptr || !scene_.next_event_estimation) return;
+  if (environment == nullptr) return;
   const EnvironmentSample light = environment->sample(path.sampler.next2());
   ++tile_.counters.light_samples;
   const LobeValue value = base.emit(frame.to_local(light.direction));

@@ -38,8 +38,7 @@ void Tracer<Body>::collect(Escapes& escapes) {
     const Escape& from = escapes.from[i];
     const EnvironmentValue& light = batch.value[i];
     Rgb radiance = light.radiance;
-    if (from.pdf != Path::not_looked_for &&
-        scene_.next_event_estimation) {  // it was looked for as well
+    if (from.pdf != Path::not_looked_for) {
       const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
       if constexpr (Body::connects && Body::smooth) {
         const Rgb expected = connector_.expected(from.n, from.start) * Connector::far_share;
@@ -77,7 +76,7 @@ void Tracer<Body>::leave_print(Path path) {
   collector_.note("print", path);
   const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
   Hit hit;
-  if (environment && scene_.next_event_estimation) {
+  if (environment) {
     const EnvironmentSample light = environment->sample(path.sampler.next2());
     ++tile_.counters.light_samples;
     const double cosine = light.direction.z;
@@ -91,8 +90,6 @@ void Tracer<Body>::leave_print(Path path) {
   if (!environment)
     collector_.collect(path, std::get<UniformEnvironment>(scene_.environment).radiance,
                        path.weight);
-  else if (!scene_.next_event_estimation)
-    collector_.collect(path, environment->value_from(path.d).radiance, path.weight);
 }
 
 }  // namespace translucube

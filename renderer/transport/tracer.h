@@ -135,8 +135,7 @@ class Tracer {
 
  private:
   static LightList lights_of(const Scene& scene, std::uint64_t key) {
-    return Body::smooth || !scene.next_event_estimation ? LightList()
-                                                        : LightList(scene.environment, key);
+    return Body::smooth ? LightList() : LightList(scene.environment, key);
   }
 
   Connector make_connector(const Scene& scene, std::uint64_t key) {

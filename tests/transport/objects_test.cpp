@@ -180,25 +180,6 @@ TEST(LongMeanPathLength, InPlatesBoxesWedgesAndBowlsIsThatOfTheirVolumeToHalfAPe
           << which.name << " alpha " << m.coefficients.alpha;
 }
 
-/// A plate so wide that it is a slab, lit from this side or from the other.
-Estimate lit_plate(const Material& m, float sigma_a, bool above, std::uint32_t samples) {
-  Scene scene = lit_slab_scene(m, sigma_a, above);
-  scene.shape = make_box({200, 200, 0.5});
-  return image_mean(trace(scene, samples));
-}
-
-TEST(WidePlate, OfMatchedIndexMeetsVanDeHulst) {
-  const Material m = material(1, 0, 90 * 0.02, 0.75);
-  EXPECT_NEAR(lit_plate(m, 10 * 0.02f, true, 128).mean / 0.09739, 1, 2e-2);
-  EXPECT_NEAR(lit_plate(m, 10 * 0.02f, false, 128).mean / 0.66096, 1, 1e-2);
-}
-
-TEST(WidePlate, ClearAndAbsorbingReflectsBetweenItsFaces) {
-  const double f = 0.04, e = std::exp(-0.5);
-  EXPECT_NEAR(lit_plate(material(1.5, 0, 0), 0.5f, false, 64).mean,
-              (1 - f) * (1 - f) * e / (1 - f * f * e * e), 1e-4);
-}
-
 TEST(Box, OfPlanesLooksLikeTheMesh) {
   for (const Material& m : {material(1.5, 0, 4), material(1.5, 0.3, 1)}) {
     const BuiltMesh mesh = build_mesh(box({1, 1.5, 2}));

@@ -7,8 +7,7 @@ namespace translucube {
 
 SmoothConnector::SmoothConnector(const Scene& scene, Collector& collector, std::uint64_t key)
     : collector_(collector),
-      environment_(scene.next_event_estimation ? std::get_if<ImageEnvironment>(&scene.environment)
-                                               : nullptr),
+      environment_(std::get_if<ImageEnvironment>(&scene.environment)),
       medium_(std::get<ScatteringInterior>(scene.interior).medium),
       ior_(std::get<SmoothInterface>(scene.interface).ior),
       rng_(key) {

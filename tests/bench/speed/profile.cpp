@@ -224,9 +224,8 @@ Table one_by_one(Run& run) {
   measure("rough boundary event", [&] {
     const Vec3 w = sample_isotropic(rng);
     PathSampler sampler(++sample, 0);
-    cross_microsurface(
-        RoughInterface{1.5, Ggx{0.1}}, 1.5, {w.x, w.y, std::fabs(w.z) + 1e-3}, sampler,
-        [](const MicroVertex&) {}, [](Vec3 wi, double, double) { sink = wi.x; });
+    cross_microsurface(RoughInterface{1.5, Ggx{0.1}}, 1.5, {w.x, w.y, std::fabs(w.z) + 1e-3},
+                       sampler, [](Vec3 wi, double) { sink = wi.x; });
   });
   measure("development by an RGB lane", [&] {
     sink = std::get<RgbLane>(scene->lanes[0]).apply({1, 1, 1}, rng.uniform()).r;
