@@ -6,9 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <thread>
 
 #include "renderer/base/deadline.h"
+#include "renderer/base/parallel.h"
+#include "renderer/film/explorable_develop.h"
+#include "renderer/film/film_error.h"
 #include "renderer/scene/scene.h"
 #include "renderer/transport/transport.h"
 
@@ -21,10 +23,6 @@ double thread_cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-int thread_count(int asked) {
-  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 int tile_columns(int width) { return (width + tile_size - 1) / tile_size; }
@@ -73,32 +71,27 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
   film.sum.resize(std::size_t(3) * film.width * film.height * film.lanes);
   const int columns = tile_columns(film.width), rows = (film.height + tile_size - 1) / tile_size;
   std::vector<TraceCounters> counters(std::size_t(columns) * rows);
-  std::atomic<int> next{0};
   std::atomic<double> cpu_seconds{0};
-  const auto work = [&] {
+  share_turns(threads, columns * rows, [&](Turns& turns) {
     const double start = thread_cpu_seconds();
     Tile tile;  // its memory serves one tile after the other: an explorable one has much
-    for (int i = next++; i < columns * rows && !stop.stop_requested(); i = next++) {
+    while (!stop.stop_requested()) {
+      const std::optional<int> i = turns.take();
+      if (!i) break;
       tile.counters = {};
-      tile.index = static_cast<std::uint32_t>(i);
-      tile.x0 = i % columns * tile_size;
-      tile.y0 = i / columns * tile_size;
+      tile.index = static_cast<std::uint32_t>(*i);
+      tile.x0 = *i % columns * tile_size;
+      tile.y0 = *i / columns * tile_size;
       tile.width = std::min(tile_size, film.width - tile.x0);
       tile.height = std::min(tile_size, film.height - tile.y0);
       tile.sum.assign(pixel_floats * tile.width * tile.height * film.lanes, 0.0f);
       for (std::uint32_t s = 0; s < pass.count && !stop.stop_requested(); s += samples_at_once)
         trace_tile(scene, {pass.index, s, std::min(samples_at_once, pass.count - s)}, tile);
       store(tile, film);
-      counters[i] = tile.counters;
+      counters[*i] = tile.counters;
     }
     cpu_seconds += thread_cpu_seconds() - start;
-  };
-  {
-    std::vector<std::jthread> helpers;
-    const int workers = std::min(thread_count(threads), columns * rows);
-    for (int i = 1; i < workers; ++i) helpers.emplace_back(work);
-    work();
-  }
+  });
   if (stop.stop_requested()) return {};
   for (const TraceCounters& c : counters) film.counters += c;
   film.cpu_seconds = cpu_seconds;

@@ -27,7 +27,7 @@ set(rooms
   "api:"
 
   "server/base: api/config"
-  "server/store: server/base api/base api/request renderer renderer/film"
+  "server/store: server/base api/base api/request renderer renderer/film server/store/sqlite"
   "server/store/sqlite: server/base server/store api/answer"
   "server/pictures: server/base server/store api/base api/request api/answer renderer renderer/film picture picture/sheet"
   "server/worker: server/base server/store server/pictures api/base api/request api/answer renderer renderer/base renderer/film renderer/light picture"
@@ -63,6 +63,6 @@ set(door_OpenImageIO "picture/oiio/[a-z_]+.(cpp|h)")
 set(door_OpenColorIO "picture/color.cpp")
 set(door_FreeType "picture/sheet/text.cpp")
 set(door_httplib "server/http/(server|exchange|socket_server).(cpp|h)")
-set(door_SQLite "server/store/sqlite/job_store_sqlite.cpp")
+set(door_SQLite "server/store/sqlite/connection.cpp")
 set(door_OpenSSL "server/(base/sha256|calls/tokens).cpp")
 set(door_prometheus "server/base/metrics.cpp")

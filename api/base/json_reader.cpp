@@ -122,7 +122,7 @@ Problem malformed(std::string_view text, std::size_t offset) {
 
 }  // namespace
 
-std::variant<JsonDocument, Problem> read_json(std::string_view text, std::uint64_t most_bytes) {
+Result<JsonDocument> read_json(std::string_view text, std::uint64_t most_bytes) {
   if (text.size() > most_bytes)
     return Problem{ProblemCode::payload_too_large,
                    "a body may have at most " + std::to_string(most_bytes) + " bytes",

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <variant>
 
 #include "api/base/faults.h"
+#include "api/base/result.h"
 
 namespace translucube::api {
 
@@ -25,6 +25,6 @@ struct JsonDocument {
 /// than `most_bytes` (payload_too_large), anything that is not JSON in UTF-8, a byte order mark
 /// included (malformed_json, with the offset but none of the text), and nesting deeper than
 /// deepest_nesting (invalid_request; the rest is not read).
-std::variant<JsonDocument, Problem> read_json(std::string_view text, std::uint64_t most_bytes);
+Result<JsonDocument> read_json(std::string_view text, std::uint64_t most_bytes);
 
 }  // namespace translucube::api

@@ -75,11 +75,10 @@ void add_estimate(json& object, const char* key, const std::optional<Estimate>& 
 
 }  // namespace
 
-std::variant<AppearanceRequest, Problem> parse_appearance_request(std::string_view text,
-                                                                  const Catalog& catalog) {
+Result<AppearanceRequest> parse_appearance_request(std::string_view text, const Catalog& catalog) {
   auto read = read_json(text, catalog.limits.body_bytes);
-  if (auto* problem = std::get_if<Problem>(&read)) return std::move(*problem);
-  auto& [value, faults] = std::get<JsonDocument>(read);
+  if (!read) return read.problem();
+  auto& [value, faults] = *read;
   AppearanceRequest request;
   request.material = catalog.defaults.material;
   request.material.oil_film.reset();

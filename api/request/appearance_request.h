@@ -4,9 +4,8 @@
 
 #include <string>
 #include <string_view>
-#include <variant>
 
-#include "api/base/problem.h"
+#include "api/base/result.h"
 #include "api/request/catalog.h"
 #include "api/request/request.h"
 #include "renderer/slab/appearance.h"
@@ -23,8 +22,7 @@ struct AppearanceRequest {
 };
 
 /// All faults at once, or the request; as strict as parse_render_request.
-std::variant<AppearanceRequest, Problem> parse_appearance_request(std::string_view text,
-                                                                  const Catalog& catalog);
+Result<AppearanceRequest> parse_appearance_request(std::string_view text, const Catalog& catalog);
 
 /// What the renderer makes of it, on `threads` threads (0: all cores).
 SlabAppearance measure(const AppearanceRequest& request, const Catalog& catalog, int threads);

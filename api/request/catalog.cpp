@@ -35,9 +35,8 @@ JsonDocument read_config(const fs::path& file) {
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (stream.bad()) throw ConfigError(file.string() + " cannot be read");
   auto read = read_json(text, largest_config_bytes);
-  if (const auto* problem = std::get_if<Problem>(&read))
-    throw ConfigError(file.string() + ": " + to_text(*problem));
-  return std::get<JsonDocument>(std::move(read));
+  if (!read) throw ConfigError(file.string() + ": " + to_text(read.problem()));
+  return *std::move(read);
 }
 
 /// Names stand in requests, paths of URLs and terminals.

@@ -129,11 +129,10 @@ void read_whole_request(const json& value, const std::string& pointer, const Cat
   refuse_what_the_model_cannot_serve(value, pointer, out, faults);
 }
 
-std::variant<RenderRequest, Problem> parse_render_request(std::string_view text,
-                                                          const Catalog& catalog) {
+Result<RenderRequest> parse_render_request(std::string_view text, const Catalog& catalog) {
   auto read = read_json(text, catalog.limits.body_bytes);
-  if (auto* problem = std::get_if<Problem>(&read)) return std::move(*problem);
-  auto& [value, faults] = std::get<JsonDocument>(read);
+  if (!read) return read.problem();
+  auto& [value, faults] = *read;
   RenderRequest request = catalog.defaults;
   read_whole_request(value, "", catalog, request, faults);
   if (!faults.empty()) return invalid_request(faults);

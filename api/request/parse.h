@@ -2,9 +2,8 @@
 
 #include <string>
 #include <string_view>
-#include <variant>
 
-#include "api/base/problem.h"
+#include "api/base/result.h"
 #include "api/request/catalog.h"
 #include "api/request/request.h"
 
@@ -15,8 +14,7 @@ namespace translucube::api {
 /// for integers, non-finite numbers, invalid UTF-8, nesting deeper than 16 and more than
 /// catalog.limits.body_bytes bytes are refused; nothing is clamped.
 /// Resources are checked too: names exist, files lie in allowed folders, meshes are closed.
-std::variant<RenderRequest, Problem> parse_render_request(std::string_view text,
-                                                          const Catalog& catalog);
+Result<RenderRequest> parse_render_request(std::string_view text, const Catalog& catalog);
 
 /// The canonical form: every default filled in, keys sorted, shortest round-trip numbers. Two
 /// requests that mean the same have the same text. It parses back to the same request.

@@ -108,10 +108,10 @@ void check_size(const Sweep& sweep, const Limits& limits, Faults& faults) {
 
 }  // namespace
 
-std::variant<Sweep, Problem> parse_sweep_request(std::string_view text, const Catalog& catalog) {
+Result<Sweep> parse_sweep_request(std::string_view text, const Catalog& catalog) {
   auto read = read_json(text, catalog.limits.body_bytes);
-  if (auto* problem = std::get_if<Problem>(&read)) return std::move(*problem);
-  auto& [value, faults] = std::get<JsonDocument>(read);
+  if (!read) return read.problem();
+  auto& [value, faults] = *read;
 
   Sweep sweep{catalog.defaults, {}, {}, {}, {}};
   ObjectReader object(value, "", faults);

@@ -49,11 +49,11 @@ AbsorberRequest read_asked_absorber(const std::string& text, const Catalog& cata
   json value = text;
   if (text.starts_with('{')) {
     auto read = read_json(text, catalog.limits.body_bytes);
-    if (const auto* problem = std::get_if<Problem>(&read)) {
-      faults.add("?absorber", problem->detail);
+    if (!read) {
+      faults.add("?absorber", read.problem().detail);
       return absorber;
     }
-    auto& document = std::get<JsonDocument>(read);
+    auto& document = *read;
     if (!document.faults.empty()) {
       faults.add("?absorber", document.faults.list().front().detail);
       return absorber;
@@ -74,8 +74,8 @@ std::optional<double> absorption_number(std::string_view text) {
   return value + 0.0;  // minus zero is zero
 }
 
-std::variant<Redeveloped, Problem> redevelop(std::string_view canonical_request,
-                                             const Redevelopment& asked, const Catalog& catalog) {
+Result<Redeveloped> redevelop(std::string_view canonical_request, const Redevelopment& asked,
+                              const Catalog& catalog) {
   Problem problem{ProblemCode::invalid_request, "A query parameter is not valid.", {}};
   AbsorberRequest absorber;
   if (asked.absorber) {

@@ -7,9 +7,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 
-#include "api/base/problem.h"
+#include "api/base/result.h"
 #include "api/request/catalog.h"
 #include "renderer/scene/spec.h"
 
@@ -35,8 +34,8 @@ struct Redeveloped {
 
 /// Faults have the pointers "?absorption" and "?absorber". Only the material of the request is read
 /// again: its environment may have gone since.
-std::variant<Redeveloped, Problem> redevelop(std::string_view canonical_request,
-                                             const Redevelopment& asked, const Catalog& catalog);
+Result<Redeveloped> redevelop(std::string_view canonical_request, const Redevelopment& asked,
+                              const Catalog& catalog);
 
 /// The canonical request with another quality: this many samples.
 std::string with_samples(std::string_view canonical_request, std::uint32_t samples);

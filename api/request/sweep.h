@@ -7,10 +7,9 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
-#include "api/base/problem.h"
+#include "api/base/result.h"
 #include "api/request/catalog.h"
 #include "api/request/request.h"
 
@@ -49,7 +48,7 @@ std::vector<std::vector<std::size_t>> traced_images(const Sweep& sweep, const Li
 /// {"base": {...}, "axes": {"absorption": [0, 0.5, 1] or {"from": 0, "to": 1, "count": 5}, ...},
 ///  "absorbers": ["red-glass", ...]}; every axis and `absorbers` may be left out. As strict as
 /// parse_render_request, and refuses what `limits` does not allow.
-std::variant<Sweep, Problem> parse_sweep_request(std::string_view text, const Catalog& catalog);
+Result<Sweep> parse_sweep_request(std::string_view text, const Catalog& catalog);
 
 /// As canonical_json for a render: it parses back to the same sweep.
 std::string canonical_json(const Sweep& sweep);

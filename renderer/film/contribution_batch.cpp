@@ -135,7 +135,7 @@ void find_bins(const BinSpread& spread, const ContributionBatch& batch, SpreadBa
     const Real w0 = choose(1, p * q * s * at_0, a * b * c * (-1.0f / 6)),
                w2 = choose(0, x * p * s * at_1, t * a * c * -0.5f),
                w3 = choose(0, x * p * q * at_2, t * a * b * (1.0f / 6));
-    const Real bin = choose(0, 1, node + float(ExplorableBins::before_nodes));
+    const Real bin = choose(0, 1, node + float(LengthBins::before_nodes));
     hn::StoreU(hn::BitCast(DU(), hn::ConvertTo(DI(), bin.v)), DU(), &found.bin[i]);
     hn::StoreU(w0.v, D(), &found.weights[0][i]);
     hn::StoreU((Real(1) - (w0 + w2 + w3)).v, D(), &found.weights[1][i]);

@@ -7,7 +7,7 @@
 
 #include "renderer/base/vec.h"
 #include "renderer/film/absorption.h"
-#include "renderer/film/explorable.h"
+#include "renderer/film/length_bins.h"
 
 namespace translucube {
 

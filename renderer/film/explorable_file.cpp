@@ -1,11 +1,10 @@
-// Explorable films as EXR files.
+#include "renderer/film/explorable_file.h"
 
 #include <charconv>
 #include <sstream>
 
 #include "picture/image_io.h"
 #include "picture/image_io_rules.h"
-#include "renderer/film/explorable.h"
 
 namespace translucube {
 namespace {

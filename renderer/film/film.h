@@ -1,8 +1,12 @@
 #pragma once
 
+// What is kept of the light that paths bring: the sums of a pass, and the film that passes are
+// merged into. In this room stand films, the lanes that apply an absorber to them (absorption.h),
+// and the lengths of paths for absorbers to come (explorable.h); no path, scene or body does.
+
+#include <cstddef>
 #include <cstdint>
-#include <string>
-#include <string_view>
+#include <span>
 #include <vector>
 
 #include "picture/image.h"
@@ -56,6 +60,28 @@ struct Film {
 /// Adds the next pass (pass.index == film.passes) (Chan et al. 1979, the pairwise update).
 void merge(Film& film, const PassFilm& pass);
 
+/// The sums of the picture that errors refer to: those of lane 0, or of all lanes together where
+/// they are shares of it. Refers to the film.
+class PictureSums {
+ public:
+  explicit PictureSums(const Film& film) : PictureSums(film.sum, film.m2.size(), film.shares) {}
+  explicit PictureSums(const PassFilm& film)
+      : PictureSums(film.sum, std::size_t(3) * film.width * film.height, film.shares) {}
+  PictureSums(const PictureSums&) = delete;
+  PictureSums& operator=(const PictureSums&) = delete;
+
+  float operator[](std::size_t i) const { return sum_[i]; }
+
+ private:
+  PictureSums(const std::vector<float>& sum, std::size_t size, bool shares);
+
+  std::vector<float> added_;
+  std::span<const float> sum_;
+};
+
+/// The factor from a film's sums to its means; 0 before the first sample.
+float to_mean(const Film& film);
+
 /// The picture that errors refer to: the mean of lane 0, or of the sum of all lanes where they are
 /// shares of it (an explorable film without absorption).
 Image develop(const Film& film);
@@ -64,17 +90,5 @@ Image develop(const Film& film, int lane);
 
 /// Estimate of Var(pixel mean), height x width x 3, from the independent passes. Needs two passes.
 Image variance(const Film& film);
-
-/// Estimate of sqrt(relMSE), relMSE = mean (x - ref)^2 / (ref^2 + 0.01) over channels and pixels,
-/// the 0.1 % largest pixels set aside. NaN before the second pass; ref is told from the picture and
-/// its surroundings.
-double relative_error(const Film& film);
-
-/// Binary form for checkpoints: header, counters, floats, checksum; same machine only.
-/// The parsers throw std::runtime_error for anything short, foreign or corrupt.
-std::string to_bytes(const PassFilm& film);
-std::string to_bytes(const Film& film);
-PassFilm pass_film_from_bytes(std::string_view bytes);
-Film film_from_bytes(std::string_view bytes);
 
 }  // namespace translucube

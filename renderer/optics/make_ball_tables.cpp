@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <thread>
 #include <vector>
 
+#include "renderer/base/parallel.h"
 #include "renderer/optics/ball_tables.h"
 
 namespace {
@@ -52,16 +52,13 @@ Exit leave_ball(double radius, const std::vector<Table>& below, Rng& rng) {
 
 std::vector<Exit> simulate(double radius, const std::vector<Table>& below, std::uint64_t key) {
   std::vector<Exit> exits(walks_per_level);
-  const auto run = [&](int part, int parts) {
-    for (int i = part; i < walks_per_level; i += parts) {
+  constexpr int at_once = 1024;
+  parallel_for(0, walks_per_level / at_once, [&](int part) {
+    for (int i = part * at_once; i < (part + 1) * at_once; ++i) {
       Rng rng(hash_combine(key, i));
       exits[i] = leave_ball(radius, below, rng);
     }
-  };
-  const int parts = std::max(1u, std::thread::hardware_concurrency());
-  std::vector<std::jthread> threads;
-  for (int part = 0; part < parts; ++part) threads.emplace_back(run, part, parts);
-  threads.clear();
+  });
   return exits;
 }
 

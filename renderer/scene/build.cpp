@@ -165,7 +165,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   if (spec.explorable) {
     const auto* walk = std::get_if<ScatteringInterior>(&scene->interior);
     scene->spread = BinSpread(
-        explorable_bins(spec.explorable->densest_sigma_a * unit, walk ? walk->medium.sigma_s : 0));
+        length_bins(spec.explorable->densest_sigma_a * unit, walk ? walk->medium.sigma_s : 0));
   }
   return scene;
 }

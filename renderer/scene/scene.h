@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "renderer/film/absorption.h"
-#include "renderer/film/explorable.h"
+#include "renderer/film/length_bins.h"
 #include "renderer/light/backdrop.h"
 #include "renderer/light/environment.h"
 #include "renderer/optics/interface.h"

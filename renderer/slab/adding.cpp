@@ -117,8 +117,8 @@ std::optional<AddedReadings> add_layers(const SlabBody& body, const SlabChannels
   }
   const int n = static_cast<int>(channels.size());
   std::vector<SlabLayer> layers(2 * n);
-  in_parallel(threads, static_cast<int>(layers.size()),
-              [&](int i) { layers[i] = media[i / n].layer(channels.sigma_a[i % n]); });
+  parallel_for(threads, static_cast<int>(layers.size()),
+               [&](int i) { layers[i] = media[i / n].layer(channels.sigma_a[i % n]); });
 
   AddedReadings added;
   std::array<SlabRead, 2> unwalked;
@@ -157,7 +157,7 @@ std::optional<AddedReadings> add_layers(const SlabBody& body, const SlabChannels
     faces.emplace_back(streams[i % 2], std::get<RoughInterface>(body.interface),
                        hash_combine(seed, static_cast<std::uint64_t>(i)));
   for (std::uint64_t samples = first_samples; samples <= most_samples;) {
-    in_parallel(threads, rough_replicates, [&](int i) {
+    parallel_for(threads, rough_replicates, [&](int i) {
       faces[i].sample_to(samples);
       solve(i, faces[i].face());
     });

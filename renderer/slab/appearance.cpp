@@ -43,7 +43,7 @@ std::uint64_t next_histories(std::uint64_t histories, double error, double stand
 }
 
 void trace(const SlabBody& body, std::uint64_t seed, std::vector<Trial*> trials, int threads) {
-  in_parallel(threads, replicates * static_cast<int>(trials.size()), [&](int i) {
+  parallel_for(threads, replicates * static_cast<int>(trials.size()), [&](int i) {
     Trial& trial = *trials[i / replicates];
     const int replicate = i % replicates;
     const std::uint64_t key = hash_combine(

@@ -9,6 +9,7 @@ namespace {
 
 using api::Problem;
 using api::ProblemCode;
+using api::Result;
 
 constexpr std::array<std::string_view, 3> own_names{"localhost", "127.0.0.1", "[::1]"};
 
@@ -80,7 +81,7 @@ AccessPolicy access_policy(const api::ServerConfig& config) {
   return policy;
 }
 
-std::variant<Admitted, Problem> admit(const AccessPolicy& policy, const HttpRequest& request) {
+Result<Admitted> admit(const AccessPolicy& policy, const HttpRequest& request) {
   if (request.path == "/livez" || request.path == "/readyz") return Admitted{};
   if (!is_our_host(policy, request.header("host")))
     return Problem{ProblemCode::misdirected,

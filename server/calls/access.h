@@ -5,10 +5,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
-#include "api/base/problem.h"
+#include "api/base/result.h"
 #include "api/config/server_config.h"
 #include "server/calls/tokens.h"
 #include "server/http/message.h"
@@ -40,6 +39,6 @@ struct Admitted {
 /// - Origin and Sec-Fetch-Site (403), unless the method is GET, HEAD or OPTIONS: a page of another
 ///   site may not post here on its reader's behalf.
 /// - Authorization: Bearer (401; RFC 6750, 2.1), where the policy has tokens.
-std::variant<Admitted, api::Problem> admit(const AccessPolicy& policy, const HttpRequest& request);
+api::Result<Admitted> admit(const AccessPolicy& policy, const HttpRequest& request);
 
 }  // namespace translucube::server

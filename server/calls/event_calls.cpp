@@ -9,8 +9,8 @@
 namespace translucube::server {
 namespace {
 
-using api::Problem;
 using api::ProblemCode;
+using api::Result;
 using std::chrono::steady_clock;
 
 /// Comments keep proxies from closing a stream in which nothing happens.
@@ -49,8 +49,7 @@ struct Stream {
     if (!begun) text = reconnection_time;
     begun = true;
     service.watch(longest_block, [&] {
-      const auto result = events_after(last);
-      const auto* found = std::get_if<JobService::Events>(&result);
+      const auto found = events_after(last);
       if (!found) return ended = true;  // removed
       for (const Event& event : found->events) {
         text += text_of(event);
@@ -74,11 +73,10 @@ struct Stream {
 HttpResponse stream_of(Endpoints& endpoints, const HttpRequest& request, EventsAfter events_after,
                        SamplesToSee samples_to_see) {
   const std::uint64_t last = last_event_id(request.header("last-event-id"));
-  const auto first = events_after(last);
-  if (const auto* problem = std::get_if<Problem>(&first)) return problem_response(*problem);
-  const auto& found = std::get<JobService::Events>(first);
+  const auto found = events_after(last);
+  if (!found) return problem_response(found.problem());
   // Nothing will come: with 204 a browser does not connect again.
-  if (found.ended && found.events.empty()) return {204, {}, {}, {}};
+  if (found->ended && found->events.empty()) return {204, {}, {}, {}};
   if (request.method == "HEAD") return {200, {}, "text/event-stream", {}};
   const auto stream = std::shared_ptr<Stream>(
       new Stream{endpoints.service,

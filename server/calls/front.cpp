@@ -49,9 +49,8 @@ HttpHandlers Front::handlers() {
 
 std::optional<HttpResponse> Front::admit(HttpRequest& request) const {
   auto admission = server::admit(policy_, request);
-  if (const auto* refused = std::get_if<api::Problem>(&admission))
-    return problem_response(*refused);
-  request.client = std::get<Admitted>(std::move(admission)).client;
+  if (!admission) return problem_response(admission.problem());
+  request.client = std::move(admission->client);
   return std::nullopt;
 }
 

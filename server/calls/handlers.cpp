@@ -11,6 +11,7 @@ namespace {
 
 using api::Problem;
 using api::ProblemCode;
+using api::Result;
 
 constexpr int default_page = 50, longest_page = 200;
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "api/base/result.h"
 #include "server/calls/router.h"
 #include "server/http/negotiation.h"
 
@@ -56,13 +57,13 @@ HttpResponse tagged_json(const HttpRequest& request, const std::string& body,
                          const std::string& etag);
 
 /// A body that must be JSON, and an Idempotency-Key: a problem, or the key if there is one.
-Result<std::optional<std::string>> submission_key(const HttpRequest& request);
+api::Result<std::optional<std::string>> submission_key(const HttpRequest& request);
 /// The query of a list: cursor, limit, status.
-Result<ListQuery> list_query(const HttpRequest& request);
+api::Result<ListQuery> list_query(const HttpRequest& request);
 /// Of `Prefer: wait` and `?wait=`.
 inline constexpr int longest_wait_s = 60;
 /// The query's `wait` [s], 0 where it is not there, longest_wait_s at most.
-Result<int> wait_query(const HttpRequest& request);
+api::Result<int> wait_query(const HttpRequest& request);
 
 /// One of a bounded number of places, given back at the end of its life.
 class Place {
@@ -90,7 +91,7 @@ auto answer_after(Endpoints& endpoints, int seconds, bool& waited, Get get, Done
   waited = true;
   endpoints.service.watch(std::chrono::seconds(seconds), [&] {
     result = get();
-    return std::holds_alternative<api::Problem>(result) || done(std::get<0>(result));
+    return !result || done(*result);
   });
   return result;
 }
@@ -100,15 +101,14 @@ auto answer_after(Endpoints& endpoints, int seconds, bool& waited, Get get, Done
 template <typename Get>
 HttpResponse status_response(Endpoints& endpoints, const HttpRequest& request, Get get) {
   const auto seconds = wait_query(request);
-  if (const auto* problem = std::get_if<api::Problem>(&seconds)) return problem_response(*problem);
+  if (!seconds) return problem_response(seconds.problem());
   const std::string_view known = request.header("if-none-match");
   bool waited = false;
-  const auto status =
-      answer_after(endpoints, std::get<int>(seconds), waited, get, [&](const auto& now) {
-        return api::is_end(now->state) || (!known.empty() && !etag_matches(known, now->etag));
-      });
-  if (const auto* problem = std::get_if<api::Problem>(&status)) return problem_response(*problem);
-  const auto& [state, json, etag] = *std::get<0>(status);
+  const auto status = answer_after(endpoints, *seconds, waited, get, [&](const auto& now) {
+    return api::is_end(now->state) || (!known.empty() && !etag_matches(known, now->etag));
+  });
+  if (!status) return problem_response(status.problem());
+  const auto& [state, json, etag] = **status;
   return tagged_json(request, json, etag);
 }
 

@@ -6,6 +6,7 @@ namespace {
 
 using api::Problem;
 using api::ProblemCode;
+using api::Result;
 
 constexpr const char* what_there_is =
     "An image can be had as image/png, image/x-exr, image/tiff or image/jpeg "
@@ -86,10 +87,10 @@ Result<ImageQuery> image_query(const HttpRequest& request) {
 template <typename Find>
 HttpResponse image_response(const HttpRequest& request, Find&& find) {
   const auto query = image_query(request);
-  if (const auto* problem = std::get_if<Problem>(&query)) return problem_response(*problem);
-  const auto result = find(std::get<ImageQuery>(query));
-  if (const auto* problem = std::get_if<Problem>(&result)) return problem_response(*problem);
-  const auto& image = std::get<ImageFile>(result);
+  if (!query) return problem_response(query.problem());
+  const auto result = find(*query);
+  if (!result) return problem_response(result.problem());
+  const auto& image = *result;
   if (etag_matches(request.header("if-none-match"), image.etag))
     return with_headers_of(image, {304, {}, {}, {}});
   return with_headers_of(image, body_response(request, image));

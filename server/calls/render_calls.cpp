@@ -5,7 +5,6 @@
 
 namespace translucube::server {
 
-using api::Problem;
 using api::RenderStatus;
 
 namespace {
@@ -16,11 +15,10 @@ bool has_ended(const RenderStatus& status) { return api::is_end(status.state); }
 
 HttpResponse post_render(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
   const auto key = submission_key(request);
-  if (const auto* problem = std::get_if<Problem>(&key)) return problem_response(*problem);
-  auto submitted =
-      endpoints.service.submit(request.body, std::get<std::optional<std::string>>(key));
-  if (const auto* problem = std::get_if<Problem>(&submitted)) return problem_response(*problem);
-  auto& [status, created] = std::get<Submission>(submitted);
+  if (!key) return problem_response(key.problem());
+  auto submitted = endpoints.service.submit(request.body, *key);
+  if (!submitted) return problem_response(submitted.problem());
+  auto& [status, created] = *submitted;
 
   std::string applied;
   if (const std::optional<int> asked = preferred_wait(request.header("prefer"))) {
@@ -28,8 +26,8 @@ HttpResponse post_render(Endpoints& endpoints, const HttpRequest& request, const
     bool waited = false;
     auto result = answer_after(
         endpoints, seconds, waited, [&] { return endpoints.service.get(status.id); }, has_ended);
-    if (const auto* problem = std::get_if<Problem>(&result)) return problem_response(*problem);
-    status = std::get<RenderStatus>(std::move(result));
+    if (!result) return problem_response(result.problem());
+    status = *std::move(result);
     if (waited || seconds == 0) applied = "wait=" + std::to_string(seconds);
   }
   HttpResponse response = json_response(has_ended(status) ? 200 : 202, to_json(status));
@@ -41,10 +39,10 @@ HttpResponse post_render(Endpoints& endpoints, const HttpRequest& request, const
 
 HttpResponse list_renders(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
   const auto query = list_query(request);
-  if (const auto* problem = std::get_if<Problem>(&query)) return problem_response(*problem);
-  const auto page = endpoints.service.list(std::get<ListQuery>(query));
-  if (const auto* problem = std::get_if<Problem>(&page)) return problem_response(*problem);
-  const auto& [renders, next_cursor] = std::get<RenderPage>(page);
+  if (!query) return problem_response(query.problem());
+  const auto page = endpoints.service.list(*query);
+  if (!page) return problem_response(page.problem());
+  const auto& [renders, next_cursor] = *page;
   return tagged_json(request, api::render_list_json(renders, next_cursor));
 }
 
@@ -54,8 +52,8 @@ HttpResponse get_render(Endpoints& endpoints, const HttpRequest& request, const 
 
 HttpResponse cancel_render(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {
   const auto status = endpoints.service.cancel(ids.id);
-  if (const auto* problem = std::get_if<Problem>(&status)) return problem_response(*problem);
-  return json_response(200, to_json(std::get<RenderStatus>(status)));
+  if (!status) return problem_response(status.problem());
+  return json_response(200, to_json(*status));
 }
 
 HttpResponse delete_render(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {

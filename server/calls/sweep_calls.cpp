@@ -5,6 +5,7 @@ namespace translucube::server {
 
 using api::Problem;
 using api::ProblemCode;
+using api::Result;
 using api::SweepStatus;
 
 namespace {
@@ -24,18 +25,17 @@ Result<bool> dry_run_query(const HttpRequest& request) {
 
 HttpResponse post_sweep(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
   const auto key = submission_key(request);
-  if (const auto* problem = std::get_if<Problem>(&key)) return problem_response(*problem);
+  if (!key) return problem_response(key.problem());
   const auto dry = dry_run_query(request);
-  if (const auto* problem = std::get_if<Problem>(&dry)) return problem_response(*problem);
-  if (std::get<bool>(dry)) {
+  if (!dry) return problem_response(dry.problem());
+  if (*dry) {
     auto counts = endpoints.service.count_sweep(request.body);
-    if (const auto* problem = std::get_if<Problem>(&counts)) return problem_response(*problem);
-    return json_response(200, std::get<std::string>(std::move(counts)));
+    if (!counts) return problem_response(counts.problem());
+    return json_response(200, *std::move(counts));
   }
-  const auto submitted =
-      endpoints.service.submit_sweep(request.body, std::get<std::optional<std::string>>(key));
-  if (const auto* problem = std::get_if<Problem>(&submitted)) return problem_response(*problem);
-  const auto& [status, created] = std::get<SweepSubmission>(submitted);
+  const auto submitted = endpoints.service.submit_sweep(request.body, *key);
+  if (!submitted) return problem_response(submitted.problem());
+  const auto& [status, created] = *submitted;
   HttpResponse response = json_response(api::is_end(status.state) ? 200 : 202, to_json(status));
   response.headers = {{"Location", "/v1/sweeps/" + status.id}};
   if (!created) response.headers.emplace_back("Idempotency-Replayed", "true");
@@ -44,10 +44,10 @@ HttpResponse post_sweep(Endpoints& endpoints, const HttpRequest& request, const 
 
 HttpResponse list_sweeps(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
   const auto query = list_query(request);
-  if (const auto* problem = std::get_if<Problem>(&query)) return problem_response(*problem);
-  const auto page = endpoints.service.list_sweeps(std::get<ListQuery>(query));
-  if (const auto* problem = std::get_if<Problem>(&page)) return problem_response(*problem);
-  const auto& [sweeps, next_cursor] = std::get<SweepPage>(page);
+  if (!query) return problem_response(query.problem());
+  const auto page = endpoints.service.list_sweeps(*query);
+  if (!page) return problem_response(page.problem());
+  const auto& [sweeps, next_cursor] = *page;
   return tagged_json(request, api::sweep_list_json(sweeps, next_cursor));
 }
 
@@ -57,8 +57,8 @@ HttpResponse get_sweep(Endpoints& endpoints, const HttpRequest& request, const P
 
 HttpResponse cancel_sweep(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {
   const auto status = endpoints.service.cancel_sweep(ids.id);
-  if (const auto* problem = std::get_if<Problem>(&status)) return problem_response(*problem);
-  return json_response(200, to_json(std::get<SweepStatus>(status)));
+  if (!status) return problem_response(status.problem());
+  return json_response(200, to_json(*status));
 }
 
 HttpResponse delete_sweep(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {

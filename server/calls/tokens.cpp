@@ -63,9 +63,8 @@ std::vector<Token> load_tokens(const std::filesystem::path& file) {
     throw TokensError(file.string() + " cannot be opened for reading");
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   auto read = api::read_json(text, largest_file_bytes);
-  if (const auto* problem = std::get_if<api::Problem>(&read))
-    throw TokensError(file.string() + ": " + to_text(*problem));
-  auto& [document, faults] = std::get<api::JsonDocument>(read);
+  if (!read) throw TokensError(file.string() + ": " + to_text(read.problem()));
+  auto& [document, faults] = *read;
 
   std::vector<Token> tokens;
   api::ObjectReader object(document, "", faults);

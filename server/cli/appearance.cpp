@@ -16,8 +16,8 @@ int appearance_or_throw(const AppearanceOptions& options) {
   const api::Catalog catalog = api::load_catalog(config_file(options.config));
   const auto parsed = api::parse_appearance_request(
       read_input(options.request, catalog.limits.body_bytes), catalog);
-  if (const auto* problem = std::get_if<api::Problem>(&parsed)) {
-    std::cerr << to_text(*problem);
+  if (!parsed) {
+    std::cerr << to_text(parsed.problem());
     return exit_bad_request;
   }
   // The finished file takes the place of what is there: never of a device, a pipe, a folder.
@@ -25,7 +25,7 @@ int appearance_or_throw(const AppearanceOptions& options) {
     std::cerr << options.output->string() << ": is not an ordinary file\n";
     return exit_failure;
   }
-  const auto& request = std::get<api::AppearanceRequest>(parsed);
+  const auto& request = *parsed;
   const std::string answer =
       appearance_json(request, measure(request, catalog, options.threads), catalog);
   if (options.output) {

@@ -2,7 +2,8 @@
 #include <new>
 
 #include "api/request/redevelop.h"
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_develop.h"
+#include "renderer/film/explorable_file.h"
 #include "server/cli/outputs.h"
 #include "server/cli/verbs.h"
 
@@ -22,17 +23,17 @@ void develop_or_throw(const DevelopOptions& options) {
     }
   }();
   const auto made = api::redevelop(stored.request, {options.absorption, options.absorber}, catalog);
-  if (const auto* problem = std::get_if<api::Problem>(&made)) {
-    if (problem->faults.empty()) throw refusal_of(*problem);
+  if (!made) {
+    if (made.problem().faults.empty()) throw refusal_of(made.problem());
     std::string message;
-    for (const api::Fault& fault : problem->faults) {
+    for (const api::Fault& fault : made.problem().faults) {
       const bool option = fault.pointer.starts_with('?');
       message += (option ? "--" + fault.pointer.substr(1) : fault.pointer) + ": " + fault.detail;
       message += '\n';
     }
     throw Refusal{exit_bad_request, message};
   }
-  const auto& [absorption, request] = std::get<api::Redeveloped>(made);
+  const auto& [absorption, request] = *made;
   write_outputs(outputs,
                 develop_explorable(stored.film, absorption.absorber, absorption.sigma_a_peak,
                                    options.threads),

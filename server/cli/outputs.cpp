@@ -62,13 +62,13 @@ std::vector<Output> checked_outputs(const std::vector<fs::path>& files,
       query.view = view;
     }
     const auto form = image_form(query, colors.displays());
-    if (const auto* problem = std::get_if<api::Problem>(&form)) {
+    if (!form) {
       std::string message;
-      for (const api::Fault& fault : problem->faults)
+      for (const api::Fault& fault : form.problem().faults)
         message += "--" + fault.pointer.substr(1) + ": " + fault.detail + '\n';
       throw Refusal{exit_bad_request, message};
     }
-    outputs.push_back({file, std::get<ImageForm>(form)});
+    outputs.push_back({file, *form});
   }
   if ((display || view) && !for_display)
     throw Refusal{exit_bad_request, "--display and --view are for PNG, TIFF and JPEG outputs\n"};

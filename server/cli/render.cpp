@@ -12,7 +12,7 @@
 
 #include "api/answer/render_status.h"
 #include "api/request/parse.h"
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_file.h"
 #include "server/base/file.h"
 #include "server/base/signals.h"
 #include "server/cli/input.h"
@@ -75,8 +75,8 @@ int render_or_throw(const RenderOptions& options, std::stop_token stop,
   catalog.any_file = true;  // the caller's own files
   const auto parsed =
       api::parse_render_request(read_input(options.request, catalog.limits.body_bytes), catalog);
-  if (const auto* problem = std::get_if<api::Problem>(&parsed)) throw refusal_of(*problem);
-  const auto& request = std::get<api::RenderRequest>(parsed);
+  if (!parsed) throw refusal_of(parsed.problem());
+  const auto& request = *parsed;
   const ColorConfig colors(catalog.display_config);
   const std::vector<Output> outputs =
       checked_outputs(options.outputs, options.display, options.view, colors);

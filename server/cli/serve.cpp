@@ -103,11 +103,11 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   StoreOptions queue;
   queue.most_queued = catalog.server.queue_length;
   queue.interactive_seconds = catalog.server.interactive_seconds;
-  JobStore store(folder.store_file(), queue);
+  const auto store = open_job_store(folder.store_file(), queue);
   ArtifactStore artifacts(folder.artifacts());
   Metrics metrics;
-  metrics.set_store_gauges([&store] { return gauges_of(store.gauges()); });
-  JobService service(catalog, colors, store, artifacts, metrics);
+  metrics.set_store_gauges([&] { return gauges_of(store->gauges()); });
+  JobService service(catalog, colors, *store, artifacts, metrics);
   Endpoints endpoints{service, catalog, colors};
   Front front(std::move(policy), metrics,
               [&](const HttpRequest& request) { return respond(endpoints, request); });

@@ -55,8 +55,8 @@ int sweep_or_throw(const SweepOptions& options, std::stop_token stop,
   catalog.any_file = true;  // the caller's own files
   const auto parsed =
       api::parse_sweep_request(read_input(options.request, catalog.limits.body_bytes), catalog);
-  if (const auto* problem = std::get_if<api::Problem>(&parsed)) throw refusal_of(*problem);
-  const auto& sweep = std::get<api::Sweep>(parsed);
+  if (!parsed) throw refusal_of(parsed.problem());
+  const auto& sweep = *parsed;
   if (options.dry_run) {
     std::cout << api::counts_json(sweep, catalog.limits) << std::endl;
     return 0;
@@ -70,8 +70,8 @@ int sweep_or_throw(const SweepOptions& options, std::stop_token stop,
       query.view = options.view;
     }
     const auto checked = image_form(query, colors.displays());
-    if (const auto* problem = std::get_if<api::Problem>(&checked)) throw refusal_of(*problem);
-    return std::get<ImageForm>(checked);
+    if (!checked) throw refusal_of(checked.problem());
+    return *checked;
   };
   const ImageForm png = form(ImageFormat::png), exr = form(ImageFormat::exr);
   Sheets sheets{{sweep, png, colors}, {sweep, exr, colors}};

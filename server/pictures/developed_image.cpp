@@ -1,12 +1,13 @@
 #include "server/pictures/developed_image.h"
 
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_develop.h"
+#include "renderer/film/explorable_file.h"
 #include "server/base/ids.h"
 
 namespace translucube::server {
 namespace {
 
-using api::Problem;
+using api::Result;
 
 ImageFile unkept(const Darkroom& darkroom, Image image, const ImageForm& form,
                  const std::string& request, const std::string& identity) {
@@ -33,17 +34,16 @@ ImageFile redeveloped_image(Darkroom& darkroom, const StoredResult& result,
   return unkept(darkroom, std::move(image), form, redeveloped.request, name);
 }
 
-std::optional<std::variant<ImageFile, Problem>> partial_image(Darkroom& darkroom, LiveFilm& live,
-                                                              const std::string& id,
-                                                              const std::string& request,
-                                                              const ImageQuery& query) {
+std::optional<Result<ImageFile>> partial_image(Darkroom& darkroom, LiveFilm& live,
+                                               const std::string& id, const std::string& request,
+                                               const ImageQuery& query) {
   const auto checked = image_form(query, darkroom.colors.displays());
-  if (const auto* problem = std::get_if<Problem>(&checked)) return *problem;
+  if (!checked) return checked.problem();
   std::optional<api::Redeveloped> redeveloped;
   if (query.redevelopment.asked()) {
     auto made = api::redevelop(request, query.redevelopment, darkroom.catalog);
-    if (auto* problem = std::get_if<Problem>(&made)) return std::move(*problem);
-    redeveloped = std::get<api::Redeveloped>(std::move(made));
+    if (!made) return made.problem();
+    redeveloped = *std::move(made);
   }
   Image image;
   std::uint32_t samples = 0;
@@ -62,7 +62,7 @@ std::optional<std::variant<ImageFile, Problem>> partial_image(Darkroom& darkroom
   }
   const std::string so_far =
       api::with_samples(redeveloped ? redeveloped->request : request, samples);
-  return unkept(darkroom, std::move(image), std::get<ImageForm>(checked), so_far, "live " + id);
+  return unkept(darkroom, std::move(image), *checked, so_far, "live " + id);
 }
 
 }  // namespace translucube::server

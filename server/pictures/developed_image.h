@@ -5,8 +5,8 @@
 
 #include <optional>
 #include <string>
-#include <variant>
 
+#include "api/base/result.h"
 #include "server/pictures/image_artifacts.h"
 #include "server/pictures/live_films.h"
 
@@ -20,10 +20,9 @@ ImageFile redeveloped_image(Darkroom& darkroom, const StoredResult& result,
 /// What is there of a render, through another absorber where the query asks for one. Empty where
 /// nothing is to be seen yet. It carries the request with the samples so far; of an explorable
 /// render, whose finished film is kept in half floats, it differs from that by their rounding.
-std::optional<std::variant<ImageFile, api::Problem>> partial_image(Darkroom& darkroom,
-                                                                   LiveFilm& live,
-                                                                   const std::string& id,
-                                                                   const std::string& request,
-                                                                   const ImageQuery& query);
+std::optional<api::Result<ImageFile>> partial_image(Darkroom& darkroom, LiveFilm& live,
+                                                    const std::string& id,
+                                                    const std::string& request,
+                                                    const ImageQuery& query);
 
 }  // namespace translucube::server

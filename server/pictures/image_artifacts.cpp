@@ -14,6 +14,7 @@ namespace {
 
 using api::Problem;
 using api::ProblemCode;
+using api::Result;
 
 constexpr std::array<std::string_view, 3> colorspaces{"lin_rec709", "ACEScg", "XYZ"};
 
@@ -45,8 +46,7 @@ std::string form_name(const ImageForm& form) {
   return escaped(form.display) + '-' + escaped(form.view) + '.' + format;
 }
 
-std::variant<ImageForm, Problem> image_form(const ImageQuery& query,
-                                            const std::vector<Display>& displays) {
+Result<ImageForm> image_form(const ImageQuery& query, const std::vector<Display>& displays) {
   Problem problem{ProblemCode::invalid_request, "A query parameter is not valid.", {}};
   ImageForm form;
   form.format = query.format;
@@ -119,18 +119,17 @@ std::optional<StoredResult> whole_result(Darkroom& darkroom, const std::string& 
 
 }  // namespace
 
-std::variant<ImageFile, Problem> image_artifact(Darkroom& darkroom, const std::string& content,
-                                                const std::string& request,
-                                                const ImageQuery& query) {
+Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
+                                 const std::string& request, const ImageQuery& query) {
   auto& [catalog, colors, store, artifacts, metrics, explorables, busy] = darkroom;
   const auto checked = image_form(query, colors.displays());
-  if (const auto* problem = std::get_if<Problem>(&checked)) return *problem;
-  const auto& form = std::get<ImageForm>(checked);
+  if (!checked) return checked.problem();
+  const auto& form = *checked;
   std::optional<api::Redeveloped> redeveloped;
   if (query.redevelopment.asked()) {
     auto made = api::redevelop(request, query.redevelopment, catalog);
-    if (auto* problem = std::get_if<Problem>(&made)) return std::move(*problem);
-    redeveloped = std::get<api::Redeveloped>(std::move(made));
+    if (!made) return made.problem();
+    redeveloped = *std::move(made);
   }
   const Problem gone{ProblemCode::gone,
                      "The picture was removed to make room; the same request makes it again.",

@@ -5,9 +5,8 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <variant>
 
-#include "api/base/problem.h"
+#include "api/base/result.h"
 #include "api/request/catalog.h"
 #include "api/request/redevelop.h"
 #include "picture/color.h"
@@ -41,8 +40,7 @@ struct ImageForm {
 std::string form_name(const ImageForm& form);
 
 /// Checks the query against what there is.
-std::variant<ImageForm, api::Problem> image_form(const ImageQuery& query,
-                                                 const std::vector<Display>& displays);
+api::Result<ImageForm> image_form(const ImageQuery& query, const std::vector<Display>& displays);
 
 /// Brings scene-linear Rec.709 into the form and writes it. Throws ImageError, ColorError.
 void write_form(const std::filesystem::path& file, Image image, const ImageForm& form,
@@ -76,8 +74,7 @@ struct Darkroom {
 /// unless it is of another absorber (developed_image.h).
 /// `request`: the picture's, canonical. A problem where it has been removed to make room, or is not
 /// whole: then it is also forgotten. Throws FileError, StoreError.
-std::variant<ImageFile, api::Problem> image_artifact(Darkroom& darkroom, const std::string& content,
-                                                     const std::string& request,
-                                                     const ImageQuery& query);
+api::Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
+                                      const std::string& request, const ImageQuery& query);
 
 }  // namespace translucube::server

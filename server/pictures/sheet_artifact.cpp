@@ -10,6 +10,7 @@ namespace {
 
 using api::Problem;
 using api::ProblemCode;
+using api::Result;
 
 std::optional<StoredResult> result_of(const Darkroom& darkroom, const api::SweepStatus& sweep,
                                       std::uint32_t point) {
@@ -53,11 +54,11 @@ void compose(Darkroom& darkroom, const api::SweepStatus& sweep, SweepSheet& shee
 
 }  // namespace
 
-std::variant<ImageFile, Problem> sheet_artifact(Darkroom& darkroom, const api::SweepStatus& sweep,
-                                                const ImageQuery& query) {
+Result<ImageFile> sheet_artifact(Darkroom& darkroom, const api::SweepStatus& sweep,
+                                 const ImageQuery& query) {
   const auto checked = image_form(query, darkroom.colors.displays());
-  if (const auto* problem = std::get_if<Problem>(&checked)) return *problem;
-  const auto& form = std::get<ImageForm>(checked);
+  if (!checked) return checked.problem();
+  const auto& form = *checked;
   const std::string artifact =
       "sheet-" + content_hash(states_of(darkroom, sweep)) + '-' + form_name(form);
   ArtifactStore& artifacts = darkroom.artifacts;

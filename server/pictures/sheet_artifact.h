@@ -1,10 +1,9 @@
 #pragma once
 
 #include <string>
-#include <variant>
 
 #include "api/answer/sweep_status.h"
-#include "api/base/problem.h"
+#include "api/base/result.h"
 #include "server/pictures/image_artifacts.h"
 
 namespace translucube::server {
@@ -12,8 +11,7 @@ namespace translucube::server {
 /// The contact sheet of a sweep as far as it is, made on demand and kept until more of the sweep is
 /// there. Only the format, display, view and colorspace of the query are looked at. Throws
 /// FileError, StoreError.
-std::variant<ImageFile, api::Problem> sheet_artifact(Darkroom& darkroom,
-                                                     const api::SweepStatus& sweep,
-                                                     const ImageQuery& query);
+api::Result<ImageFile> sheet_artifact(Darkroom& darkroom, const api::SweepStatus& sweep,
+                                      const ImageQuery& query);
 
 }  // namespace translucube::server

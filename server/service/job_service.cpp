@@ -10,6 +10,7 @@ namespace {
 
 using api::Problem;
 using api::ProblemCode;
+using api::Result;
 
 // A file that is held open takes its place on the disk though it be removed.
 constexpr std::uint64_t largest_at_hand = 1 << 20;
@@ -38,8 +39,8 @@ Result<Submission> JobService::submit(std::string_view document,
                                       const std::optional<std::string>& idempotency_key) {
   if (const auto problem = refusal()) return *problem;
   auto parsed = api::parse_render_request(document, catalog_);
-  if (auto* problem = std::get_if<Problem>(&parsed)) return std::move(*problem);
-  const auto& request = std::get<api::RenderRequest>(parsed);
+  if (!parsed) return parsed.problem();
+  const auto& request = *parsed;
 
   NewJob job;
   job.request = api::canonical_json(request);
@@ -51,23 +52,23 @@ Result<Submission> JobService::submit(std::string_view document,
   job.first_pass = plan_pass(0, pixels, job.total_samples).value();
   job.content = content_key(request, job.request, catalog_);
 
-  return guarded<Result<Submission>>([&]() -> Result<Submission> {
-    auto outcome = accepted<Submitted>(store_.submit(job));
-    if (auto* problem = std::get_if<Problem>(&outcome)) return std::move(*problem);
-    const auto& submitted = std::get<Submitted>(outcome);
+  return guarded([&]() -> Result<Submission> {
+    auto outcome = store_.submit(job);
+    if (!outcome) return outcome.problem();
+    const auto& submitted = *outcome;
     if (submitted.created) {
-      if (submitted.job.cached)
+      if (submitted.stored.cached)
         metrics_.count_cache_hit();
       else
         metrics_.count_cache_miss();
       workers_->wake();
     }
-    return Submission{status_of(submitted.job), submitted.created};
+    return Submission{status_of(submitted.stored), submitted.created};
   });
 }
 
 Result<api::RenderStatus> JobService::get(const std::string& id) const {
-  return guarded<Result<api::RenderStatus>>([&]() -> Result<api::RenderStatus> {
+  return guarded([&]() -> Result<api::RenderStatus> {
     const std::optional<Job> job = store_.find(id);
     if (!job || job->sweep_image) return no_such_render();
     return status_of(*job);
@@ -78,17 +79,17 @@ Result<ToldText> JobService::tell(const std::string& id) {
   if (auto known = ended_.find(id)) return std::move(*known);
   const auto now = ended_.now();
   const auto status = get(id);
-  if (const auto* problem = std::get_if<Problem>(&status)) return *problem;
-  ToldText text = told(std::get<api::RenderStatus>(status));
+  if (!status) return status.problem();
+  ToldText text = told(*status);
   if (api::is_end(text->state)) ended_.keep(id, text, now);
   return text;
 }
 
 Result<RenderPage> JobService::list(const ListQuery& query) const {
   const auto filter = page_filter(query);
-  if (const auto* problem = std::get_if<Problem>(&filter)) return *problem;
-  return guarded<Result<RenderPage>>([&]() -> Result<RenderPage> {
-    std::vector<Job> jobs = store_.list(std::get<JobFilter>(filter));
+  if (!filter) return filter.problem();
+  return guarded([&]() -> Result<RenderPage> {
+    std::vector<Job> jobs = store_.list(*filter);
     RenderPage page;
     page.next_cursor = cut_page(jobs, query.limit);
     for (const Job& job : jobs) page.renders.push_back(status_of(job));
@@ -97,10 +98,11 @@ Result<RenderPage> JobService::list(const ListQuery& query) const {
 }
 
 Result<api::RenderStatus> JobService::cancel(const std::string& id) {
-  return guarded<Result<api::RenderStatus>>([&]() -> Result<api::RenderStatus> {
+  return guarded([&]() -> Result<api::RenderStatus> {
     const std::optional<Job> known = store_.find(id);
     if (!known || known->sweep_image) return no_such_render();
-    const std::optional<Job> job = store_.cancel(id);
+    store_.cancel(id);
+    const std::optional<Job> job = store_.find(id);
     if (!job) return no_such_render();
     if (job->state == api::JobState::canceled) {
       workers_->stop_job(id);
@@ -113,19 +115,19 @@ Result<api::RenderStatus> JobService::cancel(const std::string& id) {
 
 std::optional<Problem> JobService::remove(const std::string& id) {
   using Unused = std::vector<StoredResult>;
-  const auto result = guarded<Result<Unused>>([&]() -> Result<Unused> {
+  const auto result = guarded([&]() -> Result<Unused> {
     const std::optional<Job> known = store_.find(id);
     if (!known || known->sweep_image) return no_such_render();
     const std::optional<Unused> unused = store_.remove(id);
     if (!unused) return no_such_render();
     return *unused;
   });
-  if (const auto* problem = std::get_if<Problem>(&result)) return *problem;
+  if (!result) return result.problem();
   ended_.forget();
   pictures_.forget();
   workers_->stop_job(id);
   discard_files(id);
-  for (const StoredResult& unused : std::get<Unused>(result)) discard_result(unused);
+  for (const StoredResult& unused : *result) discard_result(unused);
   changed();
   return std::nullopt;
 }
@@ -134,7 +136,7 @@ Result<ImageFile> JobService::image(const std::string& id, const ImageQuery& que
   if (auto known = pictures_.find({id, query}); known && known->file->is_as_opened())
     return std::move(*known);
   const auto now = pictures_.now();
-  auto made = guarded<Result<ImageFile>>([&]() -> Result<ImageFile> {
+  auto made = guarded([&]() -> Result<ImageFile> {
     const std::optional<Job> job = store_.find(id);
     if (!job || job->sweep_image) return no_such_render();
     if (query.partial && !api::is_end(job->state))
@@ -145,12 +147,10 @@ Result<ImageFile> JobService::image(const std::string& id, const ImageQuery& que
     if (auto problem = no_picture(job->state)) return std::move(*problem);
     return image_artifact(darkroom_, store_.pictures(id).at(0).content, job->request, query);
   });
-  const auto* problem = std::get_if<Problem>(&made);
   // Removed while it was read: then that is the answer.
-  if (problem && problem->code == ProblemCode::gone && !store_.find(id)) return no_such_render();
-  if (const auto* image = std::get_if<ImageFile>(&made);
-      image && image->file->size() <= largest_at_hand)
-    pictures_.keep({id, query}, *image, now);
+  if (!made && made.problem().code == ProblemCode::gone && !store_.find(id))
+    return no_such_render();
+  if (made && made->file->size() <= largest_at_hand) pictures_.keep({id, query}, *made, now);
   return made;
 }
 

@@ -10,14 +10,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "api/answer/render_status.h"
 #include "api/answer/sweep_status.h"
-#include "api/base/problem.h"
+#include "api/base/result.h"
 #include "api/request/catalog.h"
 #include "picture/color.h"
+#include "server/base/ids.h"
 #include "server/base/recent.h"
 #include "server/pictures/explorable_cache.h"
 #include "server/pictures/image_artifacts.h"
@@ -27,9 +27,6 @@
 #include "server/worker/worker.h"
 
 namespace translucube::server {
-
-template <typename T>
-using Result = std::variant<T, api::Problem>;
 
 template <typename Status>
 struct Accepted {
@@ -76,36 +73,36 @@ class JobService {
   ~JobService();
 
   // Renders (job_service.cpp).
-  Result<Submission> submit(std::string_view document,
-                            const std::optional<std::string>& idempotency_key);
-  Result<api::RenderStatus> get(const std::string& id) const;
+  api::Result<Submission> submit(std::string_view document,
+                                 const std::optional<std::string>& idempotency_key);
+  api::Result<api::RenderStatus> get(const std::string& id) const;
   /// `get` as text, without a look into the store where the render has ended and was asked for.
-  Result<ToldText> tell(const std::string& id);
-  Result<RenderPage> list(const ListQuery& query) const;
+  api::Result<ToldText> tell(const std::string& id);
+  api::Result<RenderPage> list(const ListQuery& query) const;
   /// A render that has ended stays as it ended.
-  Result<api::RenderStatus> cancel(const std::string& id);
+  api::Result<api::RenderStatus> cancel(const std::string& id);
   /// Cancels if needed and removes all data.
   std::optional<api::Problem> remove(const std::string& id);
-  Result<ImageFile> image(const std::string& id, const ImageQuery& query);
+  api::Result<ImageFile> image(const std::string& id, const ImageQuery& query);
   /// Samples of what `image` with `partial` shows of a render that is being traced; 0: nothing.
   std::uint32_t samples_to_see(const std::string& id) const { return live_films_.samples(id); }
 
   // Sweeps (job_service_sweeps.cpp).
   /// What a dry run answers, JSON text.
-  Result<std::string> count_sweep(std::string_view document) const;
-  Result<SweepSubmission> submit_sweep(std::string_view document,
-                                       const std::optional<std::string>& idempotency_key);
-  Result<api::SweepStatus> get_sweep(const std::string& id) const;
-  Result<ToldText> tell_sweep(const std::string& id) const;
-  Result<SweepPage> list_sweeps(const ListQuery& query) const;
-  Result<api::SweepStatus> cancel_sweep(const std::string& id);
+  api::Result<std::string> count_sweep(std::string_view document) const;
+  api::Result<SweepSubmission> submit_sweep(std::string_view document,
+                                            const std::optional<std::string>& idempotency_key);
+  api::Result<api::SweepStatus> get_sweep(const std::string& id) const;
+  api::Result<ToldText> tell_sweep(const std::string& id) const;
+  api::Result<SweepPage> list_sweeps(const ListQuery& query) const;
+  api::Result<api::SweepStatus> cancel_sweep(const std::string& id);
   std::optional<api::Problem> remove_sweep(const std::string& id);
   /// `point`: a client's text.
-  Result<ImageFile> point_image(const std::string& id, const std::string& point,
-                                const ImageQuery& query);
+  api::Result<ImageFile> point_image(const std::string& id, const std::string& point,
+                                     const ImageQuery& query);
 
   /// The contact sheet, of what is there so far.
-  Result<ImageFile> sheet(const std::string& id, const ImageQuery& query);
+  api::Result<ImageFile> sheet(const std::string& id, const ImageQuery& query);
 
   // Changes (job_service_changes.cpp).
   /// Calls `look` now and after every change, until it returns true, the time is over or the
@@ -116,8 +113,8 @@ class JobService {
     std::vector<Event> events;
     bool ended = false;
   };
-  Result<Events> events_of_render(const std::string& id, std::uint64_t after) const;
-  Result<Events> events_of_sweep(const std::string& id, std::uint64_t after) const;
+  api::Result<Events> events_of_render(const std::string& id, std::uint64_t after) const;
+  api::Result<Events> events_of_sweep(const std::string& id, std::uint64_t after) const;
 
   /// Empty if the service can take work, else the reason why not.
   std::optional<std::string> unready_reason();

@@ -9,6 +9,7 @@ namespace translucube::server {
 
 using api::Problem;
 using api::ProblemCode;
+using api::Result;
 
 namespace {
 
@@ -93,7 +94,7 @@ void JobService::watch(std::chrono::milliseconds time, const std::function<bool(
 
 Result<JobService::Events> JobService::events_of_render(const std::string& id,
                                                         std::uint64_t after) const {
-  return guarded<Result<Events>>([&]() -> Result<Events> {
+  return guarded([&]() -> Result<Events> {
     // The state first: events that come after it are told next time.
     const std::optional<Job> job = store_.find(id);
     if (!job || job->sweep_image)
@@ -104,7 +105,7 @@ Result<JobService::Events> JobService::events_of_render(const std::string& id,
 
 Result<JobService::Events> JobService::events_of_sweep(const std::string& id,
                                                        std::uint64_t after) const {
-  return guarded<Result<Events>>([&]() -> Result<Events> {
+  return guarded([&]() -> Result<Events> {
     const std::optional<StoredSweep> sweep = store_.find_sweep(id);
     if (!sweep) return Problem{ProblemCode::not_found, "There is no sweep of this id.", {}};
     return Events{store_.events_after(id, after), api::is_end(sweep->state)};

@@ -4,13 +4,16 @@
 
 #include <spdlog/spdlog.h>
 
+#include <type_traits>
+
+#include "api/base/result.h"
 #include "server/service/job_service.h"
 
 namespace translucube::server {
 
 /// Runs `work`; what the disk refuses becomes a problem that tells a client no inner detail.
-template <typename T, typename Work>
-T guarded(Work&& work) {
+template <typename Work>
+std::invoke_result_t<Work> guarded(Work&& work) {
   try {
     return work();
   } catch (const StoreError& error) {
@@ -22,21 +25,8 @@ T guarded(Work&& work) {
       api::ProblemCode::storage_failure, "The disk of the service is full or cannot be used.", {}};
 }
 
-/// The refusals of a store's submit, or what was submitted.
-template <typename Submitted, typename Outcome>
-Result<Submitted> accepted(Outcome&& outcome) {
-  if (std::holds_alternative<IdempotencyMismatch>(outcome))
-    return api::Problem{api::ProblemCode::idempotency_mismatch,
-                        "This Idempotency-Key came before, with another request.",
-                        {}};
-  if (std::holds_alternative<QueueFull>(outcome))
-    return api::Problem{
-        api::ProblemCode::queue_full, "The queue has no room for this; try again later.", {}};
-  return std::get<Submitted>(std::forward<Outcome>(outcome));
-}
-
 /// The filter of a page, with one more than the page holds, or the problem of its cursor.
-Result<JobFilter> page_filter(const ListQuery& query);
+api::Result<JobFilter> page_filter(const ListQuery& query);
 /// Cuts what is more than the page; the cursor of the next one if there is one.
 template <typename Row>
 std::optional<std::string> cut_page(std::vector<Row>& rows, int limit) {

@@ -11,13 +11,12 @@ namespace {
 
 using api::Problem;
 using api::ProblemCode;
+using api::Result;
 
 Problem no_such_sweep() { return {ProblemCode::not_found, "There is no sweep of this id.", {}}; }
 
 Result<api::Sweep> parsed(const std::string& canonical, const api::Catalog& catalog) {
-  auto result = api::parse_sweep_request(canonical, api::without_limits(catalog));
-  if (auto* problem = std::get_if<Problem>(&result)) return std::move(*problem);
-  return std::get<api::Sweep>(std::move(result));
+  return api::parse_sweep_request(canonical, api::without_limits(catalog));
 }
 
 /// The lanes of each traced image. Where the quality says how many samples to take, a point has the
@@ -43,14 +42,14 @@ std::vector<std::vector<Picture>> pictures_of(const api::Sweep& sweep,
 Result<api::SweepStatus> status_of(const StoredSweep& stored, const JobStore& store,
                                    const api::Catalog& catalog) {
   auto sweep = parsed(stored.request, catalog);
-  if (auto* problem = std::get_if<Problem>(&sweep)) return std::move(*problem);
+  if (!sweep) return sweep.problem();
   api::SweepStatus status;
   status.id = stored.id;
   status.state = stored.state;
   status.created_at = rfc3339(stored.created_ms);
   if (stored.started_ms) status.started_at = rfc3339(*stored.started_ms);
   if (stored.finished_ms) status.finished_at = rfc3339(*stored.finished_ms);
-  status.sweep = std::get<api::Sweep>(std::move(sweep));
+  status.sweep = *std::move(sweep);
   for (SweepImageState& image : store.sweep_images(stored.id))
     status.images.push_back({std::move(image.points), image.state, std::move(image.stats),
                              std::move(image.error), image.cached});
@@ -61,16 +60,16 @@ Result<api::SweepStatus> status_of(const StoredSweep& stored, const JobStore& st
 
 Result<std::string> JobService::count_sweep(std::string_view document) const {
   const auto sweep = api::parse_sweep_request(document, catalog_);
-  if (const auto* problem = std::get_if<Problem>(&sweep)) return *problem;
-  return api::counts_json(std::get<api::Sweep>(sweep), catalog_.limits);
+  if (!sweep) return sweep.problem();
+  return api::counts_json(*sweep, catalog_.limits);
 }
 
 Result<SweepSubmission> JobService::submit_sweep(
     std::string_view document, const std::optional<std::string>& idempotency_key) {
   if (const auto problem = refusal()) return *problem;
   auto request = api::parse_sweep_request(document, catalog_);
-  if (auto* problem = std::get_if<Problem>(&request)) return std::move(*problem);
-  const auto& sweep = std::get<api::Sweep>(request);
+  if (!request) return request.problem();
+  const auto& sweep = *request;
 
   NewSweep job;
   job.request = api::canonical_json(sweep);
@@ -81,21 +80,21 @@ Result<SweepSubmission> JobService::submit_sweep(
   job.first_pass = plan_pass(0, pixels, job.total_samples).value();
   job.images = pictures_of(sweep, catalog_);
 
-  return guarded<Result<SweepSubmission>>([&]() -> Result<SweepSubmission> {
-    auto outcome = accepted<SubmittedSweep>(store_.submit(job));
-    if (auto* problem = std::get_if<Problem>(&outcome)) return std::move(*problem);
-    const auto& submitted = std::get<SubmittedSweep>(outcome);
+  return guarded([&]() -> Result<SweepSubmission> {
+    auto outcome = store_.submit(job);
+    if (!outcome) return outcome.problem();
+    const auto& submitted = *outcome;
     if (submitted.created) workers_->wake();
-    auto status = status_of(submitted.sweep, store_, catalog_);
-    if (auto* problem = std::get_if<Problem>(&status)) return std::move(*problem);
-    for (const api::SweepImageStatus& image : std::get<api::SweepStatus>(status).images)
+    auto status = status_of(submitted.stored, store_, catalog_);
+    if (!status) return status.problem();
+    for (const api::SweepImageStatus& image : status->images)
       if (submitted.created && image.cached) metrics_.count_cache_hit();
-    return SweepSubmission{std::get<api::SweepStatus>(std::move(status)), submitted.created};
+    return SweepSubmission{*std::move(status), submitted.created};
   });
 }
 
 Result<api::SweepStatus> JobService::get_sweep(const std::string& id) const {
-  return guarded<Result<api::SweepStatus>>([&]() -> Result<api::SweepStatus> {
+  return guarded([&]() -> Result<api::SweepStatus> {
     const std::optional<StoredSweep> sweep = store_.find_sweep(id);
     if (!sweep) return no_such_sweep();
     return status_of(*sweep, store_, catalog_);
@@ -104,15 +103,15 @@ Result<api::SweepStatus> JobService::get_sweep(const std::string& id) const {
 
 Result<ToldText> JobService::tell_sweep(const std::string& id) const {
   const auto status = get_sweep(id);
-  if (const auto* problem = std::get_if<Problem>(&status)) return *problem;
-  return told(std::get<api::SweepStatus>(status));
+  if (!status) return status.problem();
+  return told(*status);
 }
 
 Result<SweepPage> JobService::list_sweeps(const ListQuery& query) const {
   const auto filter = page_filter(query);
-  if (const auto* problem = std::get_if<Problem>(&filter)) return *problem;
-  return guarded<Result<SweepPage>>([&]() -> Result<SweepPage> {
-    std::vector<StoredSweep> sweeps = store_.list_sweeps(std::get<JobFilter>(filter));
+  if (!filter) return filter.problem();
+  return guarded([&]() -> Result<SweepPage> {
+    std::vector<StoredSweep> sweeps = store_.list_sweeps(*filter);
     SweepPage page;
     page.next_cursor = cut_page(sweeps, query.limit);
     for (const StoredSweep& sweep : sweeps)
@@ -126,8 +125,10 @@ Result<SweepPage> JobService::list_sweeps(const ListQuery& query) const {
 }
 
 Result<api::SweepStatus> JobService::cancel_sweep(const std::string& id) {
-  return guarded<Result<api::SweepStatus>>([&]() -> Result<api::SweepStatus> {
-    const std::optional<StoredSweep> sweep = store_.cancel_sweep(id);
+  return guarded([&]() -> Result<api::SweepStatus> {
+    if (!store_.find_sweep(id)) return no_such_sweep();
+    store_.cancel(id);
+    const std::optional<StoredSweep> sweep = store_.find_sweep(id);
     if (!sweep) return no_such_sweep();
     if (sweep->state == api::JobState::canceled) {
       for (const SweepImageState& image : store_.sweep_images(id)) {
@@ -146,14 +147,15 @@ std::optional<Problem> JobService::remove_sweep(const std::string& id) {
     std::vector<SweepImageState> images;
     std::vector<StoredResult> unused;
   };
-  const auto result = guarded<Result<Removed>>([&]() -> Result<Removed> {
+  const auto result = guarded([&]() -> Result<Removed> {
     const std::vector<SweepImageState> images = store_.sweep_images(id);
-    const auto unused = store_.remove_sweep(id);
+    if (!store_.find_sweep(id)) return no_such_sweep();
+    const auto unused = store_.remove(id);
     if (!unused) return no_such_sweep();
     return Removed{images, *unused};
   });
-  if (const auto* problem = std::get_if<Problem>(&result)) return *problem;
-  const auto& [images, unused] = std::get<Removed>(result);
+  if (!result) return result.problem();
+  const auto& [images, unused] = *result;
   for (const SweepImageState& image : images) {
     workers_->stop_job(image.job_id);
     discard_files(image.job_id);
@@ -166,7 +168,7 @@ std::optional<Problem> JobService::remove_sweep(const std::string& id) {
 
 Result<ImageFile> JobService::point_image(const std::string& id, const std::string& point,
                                           const ImageQuery& query) {
-  return guarded<Result<ImageFile>>([&]() -> Result<ImageFile> {
+  return guarded([&]() -> Result<ImageFile> {
     const std::optional<StoredSweep> stored = store_.find_sweep(id);
     if (!stored) return no_such_sweep();
     std::uint32_t number = 0;
@@ -176,18 +178,17 @@ Result<ImageFile> JobService::point_image(const std::string& id, const std::stri
     if (!picture) return Problem{ProblemCode::not_found, "The sweep has no such point.", {}};
     if (auto problem = no_picture(picture->state)) return std::move(*problem);
     const auto sweep = parsed(stored->request, catalog_);
-    if (const auto* problem = std::get_if<Problem>(&sweep)) return *problem;
-    return image_artifact(
-        darkroom_, picture->content,
-        api::canonical_json(api::point_request(std::get<api::Sweep>(sweep), number)), query);
+    if (!sweep) return sweep.problem();
+    return image_artifact(darkroom_, picture->content,
+                          api::canonical_json(api::point_request(*sweep, number)), query);
   });
 }
 
 Result<ImageFile> JobService::sheet(const std::string& id, const ImageQuery& query) {
-  return guarded<Result<ImageFile>>([&]() -> Result<ImageFile> {
+  return guarded([&]() -> Result<ImageFile> {
     const auto status = get_sweep(id);
-    if (const auto* problem = std::get_if<Problem>(&status)) return *problem;
-    return sheet_artifact(darkroom_, std::get<api::SweepStatus>(status), query);
+    if (!status) return status.problem();
+    return sheet_artifact(darkroom_, *status, query);
   });
 }
 

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <map>
 
+#include "renderer/film/film_bytes.h"
+
 namespace translucube::server {
 namespace {
 

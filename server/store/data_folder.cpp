@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "server/store/job_store.h"
+#include "server/store/store_error.h"
 
 namespace translucube::server {
 

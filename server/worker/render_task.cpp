@@ -6,13 +6,13 @@
 #include <chrono>
 #include <limits>
 #include <new>
-#include <thread>
 
 #include "api/answer/render_status.h"
 #include "api/request/sweep.h"
 #include "picture/image_io.h"
 #include "renderer/base/deadline.h"
-#include "renderer/film/explorable.h"
+#include "renderer/base/parallel.h"
+#include "renderer/film/explorable_file.h"
 #include "server/pictures/image_artifacts.h"
 #include "server/worker/task_watch.h"
 
@@ -45,10 +45,7 @@ double seconds_since(steady_clock::time_point start) {
 
 }  // namespace
 
-int TaskRunner::threads() const {
-  return workshop_.threads > 0 ? workshop_.threads
-                               : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
+int TaskRunner::threads() const { return thread_count(workshop_.threads); }
 
 std::optional<std::uint32_t> TaskRunner::total_samples() const {
   const auto* target = std::get_if<SampleTarget>(&hand_.job.quality());
@@ -149,8 +146,9 @@ void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
   if (!stored && task_seconds <= seconds_between_checkpoints && !hand_.film().shares)
     workshop_.artifacts.write_pass(task.job_id, *pass);
   pass.reset();
-  const TaskResult result{task_seconds, progress_of(hand_.film(), hand_.job.quality(), seconds)};
-  if (!workshop_.store.complete(task, result, *next)) {
+  const Completion completion{task_seconds,
+                              progress_of(hand_.film(), hand_.job.quality(), seconds)};
+  if (!workshop_.store.complete(task, completion, *next)) {
     forget();
     tidy(task.job_id);
     return;
@@ -216,8 +214,9 @@ void TaskRunner::finish(const Task& task, double task_seconds, bool with_pass) {
   const std::string stats =
       api::stats_json(workshop_.engine.stats(*hand_.scene, hand_.film(), seconds, threads()));
   const std::vector<StoredResult> results = write_pictures(task, stats);
-  const TaskResult result{task_seconds, progress_of(hand_.film(), hand_.job.quality(), seconds)};
-  const bool finished = workshop_.store.finish(task, result, with_pass, stats, results);
+  const Completion completion{with_pass ? std::optional(task_seconds) : std::nullopt,
+                              progress_of(hand_.film(), hand_.job.quality(), seconds)};
+  const bool finished = workshop_.store.finish(task, completion, stats, results);
   discard(results);
   if (finished) {
     workshop_.metrics.count_render(seconds);

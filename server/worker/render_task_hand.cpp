@@ -56,11 +56,11 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
       return false;
     }
     auto traced = traced_job(job, workshop_.store, workshop_.catalog);
-    if (const auto* problem = std::get_if<api::Problem>(&traced)) {
-      fail(task, *problem);
+    if (!traced) {
+      fail(task, traced.problem());
       return false;
     }
-    hand_.job = std::get<TracedJob>(std::move(traced));
+    hand_.job = *std::move(traced);
     hand_.scene = workshop_.engine.build(api::scene_spec(hand_.job.requests, workshop_.catalog));
     hand_.id = task.job_id;
   }
@@ -68,7 +68,7 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
   hand_.unsaved_from = in_memory ? 0 : task.pass.index;
   Film film = in_memory ? std::move(*in_memory)
                         : workshop_.artifacts.read_film(task.job_id, task.pass.index);
-  hand_.seconds = workshop_.store.traced_seconds(task.job_id);
+  hand_.seconds = job.progress.seconds;
   hand_.seconds_at_checkpoint = hand_.seconds;
   // A checkpoint lost to a broken disk costs time, not the render.
   while (film.passes < task.pass.index) {

@@ -5,22 +5,22 @@
 
 namespace translucube::server {
 
-std::variant<TracedJob, api::Problem> traced_job(const Job& job, const JobStore& store,
-                                                 const api::Catalog& current) {
+api::Result<TracedJob> traced_job(const Job& job, const JobStore& store,
+                                  const api::Catalog& current) {
   const api::Catalog catalog = api::without_limits(current);
   TracedJob traced;
   const std::vector<Picture> lanes = store.pictures(job.id);
   for (const Picture& lane : lanes) traced.contents.push_back(lane.content);
   if (!job.sweep_image) {
     auto parsed = api::parse_render_request(job.request, catalog);
-    if (auto* problem = std::get_if<api::Problem>(&parsed)) return std::move(*problem);
-    traced.requests = {std::get<api::RenderRequest>(std::move(parsed))};
+    if (!parsed) return parsed.problem();
+    traced.requests = {*std::move(parsed)};
     traced.canonical = {job.request};
   } else {
     const std::optional<StoredSweep> stored = store.find_sweep(job.sweep_image->sweep_id);
     auto parsed = api::parse_sweep_request(stored ? stored->request : "", catalog);
-    if (auto* problem = std::get_if<api::Problem>(&parsed)) return std::move(*problem);
-    const auto& sweep = std::get<api::Sweep>(parsed);
+    if (!parsed) return parsed.problem();
+    const auto& sweep = *parsed;
     for (const Picture& lane : lanes) {
       if (lane.point >= sweep.point_count()) break;
       traced.requests.push_back(api::point_request(sweep, lane.point));

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "api/base/problem.h"
+#include "api/base/result.h"
 #include "api/request/catalog.h"
 #include "server/store/job_store.h"
 
@@ -24,7 +23,7 @@ struct TracedJob {
 };
 
 /// A problem where what the job names has gone since it was accepted. Throws StoreError.
-std::variant<TracedJob, api::Problem> traced_job(const Job& job, const JobStore& store,
-                                                 const api::Catalog& catalog);
+api::Result<TracedJob> traced_job(const Job& job, const JobStore& store,
+                                  const api::Catalog& catalog);
 
 }  // namespace translucube::server

@@ -19,14 +19,13 @@ std::string slab_of(const std::string& members) {
 std::vector<std::string> faults_of(const std::string& text) {
   const auto result = parse_appearance_request(text, shipped_catalog());
   std::vector<std::string> all;
-  if (const auto* problem = std::get_if<Problem>(&result))
-    for (const Fault& fault : problem->faults) all.push_back(fault.pointer);
+  if (!result)
+    for (const Fault& fault : result.problem().faults) all.push_back(fault.pointer);
   return all;
 }
 
 json answer_to(const std::string& text) {
-  const auto request =
-      std::get<AppearanceRequest>(parse_appearance_request(text, shipped_catalog()));
+  const auto request = *parse_appearance_request(text, shipped_catalog());
   return json::parse(
       appearance_json(request, measure(request, shipped_catalog(), 1), shipped_catalog()));
 }
@@ -38,8 +37,7 @@ TEST(AppearanceRequest, HasNoOilFilm) {
 }
 
 TEST(AppearanceRequest, TheShortestHasDefaults) {
-  const auto request =
-      std::get<AppearanceRequest>(parse_appearance_request(slab_of(""), shipped_catalog()));
+  const auto request = *parse_appearance_request(slab_of(""), shipped_catalog());
   EXPECT_EQ(request.thickness_mm, 0.2);
   EXPECT_EQ(request.standard_error, 1e-3);
   EXPECT_EQ(request.seed, 1u);
@@ -116,10 +114,10 @@ TEST(AppearanceRequest, AllFaultsComeAtOnce) {
 }
 
 TEST(AppearanceRequest, PigmentsGiveTheAbsorption) {
-  const auto request = std::get<AppearanceRequest>(parse_appearance_request(
+  const auto request = *parse_appearance_request(
       R"({"material":{"cube":)" + some_cube +
           R"(,"pigment":{"absorption_per_scattering":0.1}},"slab":{"thickness_mm":1}})",
-      shipped_catalog()));
+      shipped_catalog());
   EXPECT_EQ(request.material.pigment_absorption_per_scattering, 0.1);
   EXPECT_THAT(material_faults(R"("coefficients":{"sigma_a_peak":1,"sigma_s":1,"alpha":0},
                                  "pigment":{"absorption_per_scattering":0.1})"),

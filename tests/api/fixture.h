@@ -43,32 +43,32 @@ inline std::vector<std::string> pointers(const std::string& text,
                                          const Catalog& catalog = shipped_catalog()) {
   const auto result = parse_render_request(text, catalog);
   std::vector<std::string> all;
-  if (const auto* problem = std::get_if<Problem>(&result))
-    for (const Fault& fault : problem->faults) all.push_back(fault.pointer);
+  if (!result)
+    for (const Fault& fault : result.problem().faults) all.push_back(fault.pointer);
   return all;
 }
 
 /// The request; a test fails where there are faults.
 inline RenderRequest accepted(const std::string& text, const Catalog& catalog = shipped_catalog()) {
   const auto result = parse_render_request(text, catalog);
-  if (const auto* problem = std::get_if<Problem>(&result)) {
-    ADD_FAILURE() << text << '\n' << to_text(*problem);
+  if (!result) {
+    ADD_FAILURE() << text << '\n' << to_text(result.problem());
     return {};
   }
-  return std::get<RenderRequest>(result);
+  return *result;
 }
 
 /// The only fault's detail.
 inline std::string fault_at(const std::string& pointer, const std::string& text,
                             const Catalog& catalog = shipped_catalog()) {
   const auto result = parse_render_request(text, catalog);
-  const auto* problem = std::get_if<Problem>(&result);
-  if (!problem || problem->faults.size() != 1 || problem->faults[0].pointer != pointer) {
+  const Problem problem = result ? Problem{} : result.problem();
+  if (problem.faults.size() != 1 || problem.faults[0].pointer != pointer) {
     ADD_FAILURE() << "wants one fault at " << pointer << ": " << text << '\n'
-                  << (problem ? to_text(*problem) : "(accepted)");
+                  << (result ? "(accepted)" : to_text(problem));
     return {};
   }
-  return problem->faults[0].detail;
+  return problem.faults[0].detail;
 }
 
 class TemporaryFolder {

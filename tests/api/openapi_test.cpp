@@ -78,7 +78,7 @@ TEST(OpenApi, ReferencesLeadSomewhere) {
 TEST(OpenApi, RequestHasTheKeysThatTheParserKnows) {
   // The parser lists what it knows where it is asked for what it does not.
   const auto known_by = [](const auto& result) {
-    std::string detail = std::get<Problem>(result).faults.at(0).detail;
+    std::string detail = result.problem().faults.at(0).detail;
     const std::string prefix = "unknown key; known here: ";
     EXPECT_TRUE(detail.starts_with(prefix)) << detail;
     std::set<std::string> names;

@@ -24,8 +24,8 @@ std::string canonical(const std::string& material, bool explorable = true) {
   const auto parsed = parse_render_request(
       R"({"material":)" + material + R"(,"explorable":)" + (explorable ? "true" : "false") + "}",
       catalog());
-  if (const auto* problem = std::get_if<Problem>(&parsed)) ADD_FAILURE() << to_text(*problem);
-  return canonical_json(std::get<RenderRequest>(parsed));
+  if (!parsed) ADD_FAILURE() << to_text(parsed.problem());
+  return canonical_json(*parsed);
 }
 
 const std::string inside =
@@ -33,16 +33,16 @@ const std::string inside =
 
 Redeveloped redeveloped(const std::string& material, const Redevelopment& asked) {
   auto result = redevelop(canonical(material), asked, catalog());
-  if (const auto* problem = std::get_if<Problem>(&result)) {
-    ADD_FAILURE() << to_text(*problem);
+  if (!result) {
+    ADD_FAILURE() << to_text(result.problem());
     return {};
   }
-  return std::get<Redeveloped>(result);
+  return *result;
 }
 
-std::vector<std::string> fault_pointers(const std::variant<Redeveloped, Problem>& result) {
+std::vector<std::string> fault_pointers(const Result<Redeveloped>& result) {
   std::vector<std::string> pointers;
-  for (const Fault& fault : std::get<Problem>(result).faults) pointers.push_back(fault.pointer);
+  for (const Fault& fault : result.problem().faults) pointers.push_back(fault.pointer);
   return pointers;
 }
 
@@ -56,7 +56,7 @@ TEST(Redevelop, TakesAbsorptionOfTheReferenceThickness) {
 TEST(Redevelop, KeepsWhatIsNotAsked) {
   const Redeveloped named = redeveloped(inside, {{}, "amber"});
   EXPECT_DOUBLE_EQ(named.absorption.sigma_a_peak, -std::log(0.7) / 5);
-  const auto request = std::get<RenderRequest>(parse_render_request(named.request, catalog()));
+  const auto request = *parse_render_request(named.request, catalog());
   EXPECT_EQ(canonical_json(request), named.request) << "it is canonical";
   EXPECT_EQ(std::get<std::string>(request.material.absorber), "amber");
   EXPECT_EQ(std::get<CubePoint>(request.material.point).roughness, 0.3);
@@ -71,13 +71,12 @@ TEST(Redevelop, GivesTheMaterialThatItsRequestDescribes) {
          {Redevelopment{0.8, {}}, Redevelopment{{}, "amber"}, Redevelopment{0.2, "amber"},
           Redevelopment{1.0, "amber"}, Redevelopment{0.0, {}}}) {
       const Redeveloped made = redeveloped(material, asked);
-      const auto request = std::get<RenderRequest>(parse_render_request(made.request, catalog()));
+      const auto request = *parse_render_request(made.request, catalog());
       const Material described = scene_spec(request, catalog()).material;
       EXPECT_EQ(described.coefficients.sigma_a_peak, made.absorption.sigma_a_peak) << made.request;
       EXPECT_EQ(described.absorber, made.absorption.absorber) << made.request;
       EXPECT_NEAR(described.coefficients.sigma_s,
-                  std::get<RenderRequest>(parse_render_request(canonical(material), catalog()))
-                              .material.point.index() == 0
+                  parse_render_request(canonical(material), catalog())->material.point.index() == 0
                       ? described.coefficients.sigma_s
                       : 2,
                   1e-12);
@@ -110,7 +109,7 @@ TEST(Redevelop, OtherSamplesAreAnotherQuality) {
   const std::string request = with_samples(canonical(inside), 12);
   EXPECT_EQ(json::parse(request)["quality"], (json{{"samples", 12}}));
   const auto parsed = parse_render_request(request, catalog());
-  EXPECT_EQ(canonical_json(std::get<RenderRequest>(parsed)), request);
+  EXPECT_EQ(canonical_json(*parsed), request);
 }
 
 TEST(Redevelop, RefusesWhatItDoesNotKnow) {
@@ -123,7 +122,7 @@ TEST(Redevelop, RefusesWhatItDoesNotKnow) {
 
 TEST(Redevelop, RefusesARenderWithoutPathLengthsNamingTheParameters) {
   const auto result = redevelop(canonical(inside, false), {0.5, "amber"}, catalog());
-  EXPECT_EQ(std::get<Problem>(result).code, ProblemCode::conflict);
+  EXPECT_EQ(result.problem().code, ProblemCode::conflict);
   EXPECT_THAT(fault_pointers(result), ElementsAre("?absorption", "?absorber"));
 }
 

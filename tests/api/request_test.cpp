@@ -98,7 +98,7 @@ TEST(Request, LimitsAreTheCatalogs) {
   fault_at("/quality/seconds", quality(R"("seconds":2.5)"), catalog);
   const std::string padded = image("10", "10") + std::string(200, ' ');
   const auto result = parse_render_request(padded, catalog);
-  EXPECT_EQ(std::get<Problem>(result).code, ProblemCode::payload_too_large);
+  EXPECT_EQ(result.problem().code, ProblemCode::payload_too_large);
 }
 
 TEST(Request, SeedsAreExactInEveryJsonReader) {

@@ -73,7 +73,7 @@ TEST(SweepPoints, ZeroHasOneSeedWhateverItsSign) {
     const auto sweep = parse_sweep_request(R"({"base":{"material":{"cube":)" + some_cube +
                                                R"(}},"axes":{"roughness":[)" + roughness + "]}}",
                                            shipped_catalog());
-    return point_request(std::get<Sweep>(sweep), 0).seed;
+    return point_request(*sweep, 0).seed;
   };
   EXPECT_EQ(seed("0"), seed("-0.0"));
 }

@@ -23,11 +23,11 @@ std::string axes(const std::string& members) { return sweep_with(R"("axes":{)" +
 /// The sweep; a test fails where there are faults.
 Sweep accepted_sweep(const std::string& text, const Catalog& catalog = shipped_catalog()) {
   auto result = parse_sweep_request(text, catalog);
-  if (const auto* problem = std::get_if<Problem>(&result)) {
-    ADD_FAILURE() << text << '\n' << to_text(*problem);
+  if (!result) {
+    ADD_FAILURE() << text << '\n' << to_text(result.problem());
     return {};
   }
-  return std::get<Sweep>(std::move(result));
+  return *std::move(result);
 }
 
 /// Where the faults are; none where it is accepted.
@@ -35,8 +35,8 @@ std::vector<std::string> sweep_pointers(const std::string& text,
                                         const Catalog& catalog = shipped_catalog()) {
   const auto result = parse_sweep_request(text, catalog);
   std::vector<std::string> all;
-  if (const auto* problem = std::get_if<Problem>(&result))
-    for (const Fault& fault : problem->faults) all.push_back(fault.pointer);
+  if (!result)
+    for (const Fault& fault : result.problem().faults) all.push_back(fault.pointer);
   return all;
 }
 

@@ -42,12 +42,9 @@ void check_access(const Request& request) {
     plain.headers.emplace(lower, value);
   }
   AccessPolicy policy{true, {}, {"render.example:8080"}, {"https://page.example"}};
-  require(std::holds_alternative<Admitted>(admit(policy, plain)) ||
-              std::holds_alternative<api::Problem>(admit(policy, plain)),
-          "there is an answer");
+  static_cast<void>(admit(policy, plain));
   policy.tokens.push_back({"somebody", {}});
-  require(std::holds_alternative<api::Problem>(admit(policy, plain)),
-          "nobody has a token whose hash is zero");
+  require(!admit(policy, plain), "nobody has a token whose hash is zero");
   is_loopback(plain.header("host"));
 }
 

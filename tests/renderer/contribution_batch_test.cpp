@@ -79,7 +79,7 @@ TEST(ContributionBatch, AddsEachToItsPixel) {
 
 TEST(ContributionBatch, SpreadsOverTheBinsOfTheLength) {
   const auto batch = random_batch();
-  for (const BinSpread& spread : {BinSpread(), BinSpread(explorable_bins(100, 50))}) {
+  for (const BinSpread& spread : {BinSpread(), BinSpread(length_bins(100, 50))}) {
     const auto bins = static_cast<std::size_t>(spread.bins().count());
     std::vector<float> sum = blank(bins), expected = blank(bins);
     const std::size_t stride = pixels * pixel_floats;

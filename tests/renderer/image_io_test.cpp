@@ -17,10 +17,10 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/repository.h"
+
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
-
-#include "tests/support/repository.h"
 #endif
 
 namespace translucube {

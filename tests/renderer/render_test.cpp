@@ -7,6 +7,7 @@
 #include <cmath>
 #include <thread>
 
+#include "renderer/film/film_bytes.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {

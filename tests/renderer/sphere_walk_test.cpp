@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "renderer/optics/lambertian.h"
+#include "renderer/shape/sphere.h"
 #include "tests/support/walks.h"
 
 namespace translucube::test {

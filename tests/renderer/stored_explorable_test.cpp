@@ -7,7 +7,7 @@
 
 #include "picture/image_io.h"
 #include "renderer/base/half.h"
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_file.h"
 #include "renderer/optics/material_cube.h"
 #include "renderer/render.h"
 #include "renderer/scene/scene.h"

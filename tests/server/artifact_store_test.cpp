@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "renderer/film/film_bytes.h"
 #include "tests/server/fixture.h"
 
 namespace translucube::server {

@@ -12,8 +12,8 @@ namespace translucube::server::test {
 namespace {
 
 using api::JobState;
-using api::Problem;
 using api::ProblemCode;
+using api::Result;
 using testing::HasSubstr;
 
 /// No file of this process can be written for as long as it lives, as on a full disk.
@@ -100,8 +100,7 @@ std::string undisturbed(const std::string& request) {
 }
 
 ProblemCode refusal(const Result<server::Submission>& result) {
-  const auto* problem = std::get_if<Problem>(&result);
-  return problem ? problem->code : ProblemCode::conflict;
+  return result ? ProblemCode::conflict : result.problem().code;
 }
 
 const std::string long_request = small_request(200, 5);
@@ -218,8 +217,8 @@ TEST(DurabilityTest, AnImageCutShortIsNeverServedAndIsMadeAgain) {
         file, static_cast<std::uintmax_t>(share * double(std::filesystem::file_size(file))));
     for (const ImageFormat format : {ImageFormat::exr, ImageFormat::png}) {
       const auto served = tested.service.image(id, {format, {}, {}, {}});
-      ASSERT_TRUE(std::holds_alternative<Problem>(served));
-      EXPECT_EQ(std::get<Problem>(served).code, ProblemCode::gone);
+      ASSERT_FALSE(served);
+      EXPECT_EQ(served.problem().code, ProblemCode::gone);
     }
     const std::string again = tested.submit(small_request(16)).id;
     EXPECT_EQ(tested.wait(again).state, JobState::succeeded);
@@ -238,8 +237,8 @@ TEST(DurabilityTest, WhatCannotBeReadIsMadeAgainToo) {
   const StoredResult result = *tested.store.find_result(tested.content(id));
   write_file(tested.artifacts.path(result.content, result.image), std::string(whole.size(), 'x'));
   const auto served = tested.service.image(id, {ImageFormat::png, {}, {}, {}});
-  ASSERT_TRUE(std::holds_alternative<Problem>(served));
-  EXPECT_EQ(std::get<Problem>(served).code, ProblemCode::gone);
+  ASSERT_FALSE(served);
+  EXPECT_EQ(served.problem().code, ProblemCode::gone);
   EXPECT_EQ(tested.wait(tested.submit(small_request(16)).id).state, JobState::succeeded);
   EXPECT_EQ(tested.exr(id), whole);
 }

@@ -138,7 +138,7 @@ TEST(LongPollTest, AnswersWhenTheStatusIsNoLongerTheKnownOne) {
   EXPECT_EQ(get("1", etag).status, 304);
   std::jthread later([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    std::get<api::RenderStatus>(tested.service.service.cancel(id));
+    EXPECT_TRUE(tested.service.service.cancel(id));
   });
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(get("60", etag).status, 200);

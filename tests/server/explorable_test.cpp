@@ -31,7 +31,7 @@ class Explored {
     EXPECT_EQ(status.state, api::JobState::succeeded);
     return status.id;
   }
-  std::variant<ImageFile, api::Problem> image(const std::string& id, api::Redevelopment asked) {
+  api::Result<ImageFile> image(const std::string& id, api::Redevelopment asked) {
     return service_.service.image(id, {ImageFormat::exr, {}, {}, {}, std::move(asked)});
   }
   std::vector<float> pixels(const ImageFile& image) {
@@ -52,22 +52,21 @@ TEST(ExplorableService, RedevelopsWithoutTracingWhatARenderOfItsOwnWouldShow) {
   Explored service;
   const std::string id = service.finished(request(0.3, true));
   const std::string alone = service.finished(request(0.8, false, "amber"));
-  const auto redeveloped = std::get<ImageFile>(service.image(id, {0.8, "amber"}));
-  const auto expected = std::get<ImageFile>(service.image(alone, {}));
+  const auto redeveloped = *service.image(id, {0.8, "amber"});
+  const auto expected = *service.image(alone, {});
   const auto got = service.pixels(redeveloped), wanted = service.pixels(expected);
   ASSERT_EQ(got.size(), wanted.size());
   for (std::size_t i = 0; i < got.size(); ++i) ASSERT_NEAR(got[i], wanted[i], 2e-3);
-  const auto own = std::get<ImageFile>(service.image(id, {}));
+  const auto own = *service.image(id, {});
   EXPECT_NE(own.etag, redeveloped.etag);
   EXPECT_NE(service.pixels(own), got);
-  EXPECT_EQ(std::get<ImageFile>(service.image(id, {0.8, "amber"})).etag, redeveloped.etag);
+  EXPECT_EQ(service.image(id, {0.8, "amber"})->etag, redeveloped.etag);
 }
 
 TEST(ExplorableService, TheRequestsOwnAbsorptionGivesTheRendersOwnPicture) {
   Explored service;
   const std::string id = service.finished(request(0.3, true));
-  EXPECT_EQ(service.pixels(std::get<ImageFile>(service.image(id, {0.3, {}}))),
-            service.pixels(std::get<ImageFile>(service.image(id, {}))));
+  EXPECT_EQ(service.pixels(*service.image(id, {0.3, {}})), service.pixels(*service.image(id, {})));
 }
 
 TEST(ExplorableService, ARenderWithoutPathLengthsIsAConflictThatNamesTheParameter) {

@@ -14,6 +14,7 @@
 
 #include "api/request/catalog.h"
 #include "picture/color.h"
+#include "renderer/film/film_error.h"
 #include "server/base/file.h"
 #include "server/service/job_service.h"
 #include "server/store/artifact_store.h"
@@ -119,45 +120,45 @@ class TestService {
       : catalog(configured(options)),
         colors(catalog.display_config),
         data(folder),
-        store(data.store_file(), options.store),
+        own_store(open_job_store(data.store_file(), options.store)),
+        store(*own_store),
         artifacts(data.artifacts()),
         service(catalog, colors, store, artifacts, metrics, std::move(engine)) {}
 
   api::RenderStatus submit(const std::string& document, std::optional<std::string> key = {}) {
     auto result = service.submit(document, key);
-    if (auto* problem = std::get_if<api::Problem>(&result)) {
-      ADD_FAILURE() << to_text(*problem);
+    if (!result) {
+      ADD_FAILURE() << to_text(result.problem());
       return {};
     }
-    return std::get<Submission>(result).status;
+    return result->status;
   }
 
   api::RenderStatus wait(const std::string& id, int seconds = 120) {
     auto result = service.get(id);
     service.watch(std::chrono::seconds(seconds), [&] {
       result = service.get(id);
-      const auto* status = std::get_if<api::RenderStatus>(&result);
-      return status == nullptr || api::is_end(status->state);
+      return !result || api::is_end(result->state);
     });
-    if (auto* problem = std::get_if<api::Problem>(&result)) {
-      ADD_FAILURE() << to_text(*problem);
+    if (!result) {
+      ADD_FAILURE() << to_text(result.problem());
       return {};
     }
-    return std::get<api::RenderStatus>(result);
+    return *result;
   }
 
   api::JobState state(const std::string& id) {
     const auto result = service.get(id);
-    return std::get<api::RenderStatus>(result).state;
+    return result->state;
   }
 
   std::string exr(const std::string& id) {
     auto result = service.image(id, {ImageFormat::exr, {}, {}, {}});
-    if (auto* problem = std::get_if<api::Problem>(&result)) {
-      ADD_FAILURE() << to_text(*problem);
+    if (!result) {
+      ADD_FAILURE() << to_text(result.problem());
       return {};
     }
-    return std::get<ImageFile>(result).file->read_all();
+    return result->file->read_all();
   }
 
   /// The folder of a render's picture.
@@ -166,7 +167,8 @@ class TestService {
   api::Catalog catalog;
   ColorConfig colors;
   DataFolder data;
-  JobStore store;
+  std::unique_ptr<JobStore> own_store;
+  JobStore& store;
   ArtifactStore artifacts;
   Metrics metrics;
   JobService service;

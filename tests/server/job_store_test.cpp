@@ -1,54 +1,89 @@
+// What every job store must do, whatever it stores in.
+
 #include "server/store/job_store.h"
 
 #include <gmock/gmock.h>
 #include <signal.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <fstream>
+#include <mutex>
 #include <set>
 #include <thread>
 
-#include "tests/server/fixture.h"
+#include "tests/server/stored.h"
+#include "tests/server/temp_folder.h"
 
 namespace translucube::server {
 namespace {
 
 using api::JobState;
+using test::a_completion;
+using test::a_job;
+using test::a_sweep;
+using test::submit;
 using test::TempFolder;
 using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using testing::SizeIs;
 
-NewJob a_job(const std::string& request = "{}", std::optional<std::string> key = {}) {
-  static std::atomic<int> contents = 0;
-  return {request, "{}",          std::move(key),
-          64,      Pass{0, 0, 4}, "content-" + std::to_string(++contents)};
-}
+constexpr const char* unknown_id = "01ARZ3NDEKTSV4RRFFQ69G5FAV";
 
-std::string submit(JobStore& store, const NewJob& job = a_job()) {
-  return std::get<Submitted>(store.submit(job)).job.id;
-}
-
-TaskResult a_result(double seconds = 1) {
-  TaskResult result{seconds, {}};
-  result.progress.passes = 1;
-  result.progress.samples = 4;
-  result.progress.relative_error = 0.5;
-  result.progress.seconds = seconds;
-  result.progress.eta_seconds = 3;
-  return result;
-}
-
-/// A store whose clock stands still until it is set.
-struct Timed {
-  std::int64_t now = 1'000'000;
-  JobStore store{
-      ":memory:",
-      {.lease_ms = 1000, .clock = [this] { return now; }, .lease_clock = [this] { return now; }}};
+struct StoreKind {
+  std::string name;
+  bool durable;  ///< opened again in the same folder, it has what it had
+  std::unique_ptr<JobStore> (*open)(const TempFolder& folder, const StoreOptions& options);
 };
 
-TEST(JobStoreTest, ASubmittedJobIsQueuedUntilItsTaskIsClaimed) {
-  JobStore store(":memory:");
+// A new store adds its line.
+const std::vector<StoreKind> stores{
+    {"SqliteInMemory", false,
+     [](const TempFolder&, const StoreOptions& options) {
+       return open_job_store(":memory:", options);
+     }},
+    {"SqliteFile", true,
+     [](const TempFolder& folder, const StoreOptions& options) {
+       return open_job_store(folder / "jobs.sqlite", options);
+     }},
+};
+
+/// An empty store whose clocks stand still until they are set.
+class JobStoreTest : public testing::TestWithParam<StoreKind> {
+ protected:
+  std::unique_ptr<JobStore> open() {
+    const auto clock = [this] { return now; };
+    return GetParam().open(
+        folder_, {.lease_ms = 1000, .clock = clock, .lease_clock = clock, .most_queued = 60});
+  }
+
+  std::int64_t now = 1'000'000;
+
+ private:
+  TempFolder folder_;
+  std::unique_ptr<JobStore> own_ = open();
+
+ protected:
+  JobStore& store = *own_;
+  void close() { own_.reset(); }
+};
+
+class DurableJobStoreTest : public JobStoreTest {};
+
+void PrintTo(const StoreKind& kind, std::ostream* out) { *out << kind.name; }
+
+std::string name_of(const testing::TestParamInfo<StoreKind>& kind) { return kind.param.name; }
+
+std::vector<StoreKind> durable_stores() {
+  std::vector<StoreKind> durable;
+  std::ranges::copy_if(stores, std::back_inserter(durable), &StoreKind::durable);
+  return durable;
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, JobStoreTest, testing::ValuesIn(stores), name_of);
+INSTANTIATE_TEST_SUITE_P(Every, DurableJobStoreTest, testing::ValuesIn(durable_stores()), name_of);
+
+TEST_P(JobStoreTest, ASubmittedJobIsQueuedUntilItsTaskIsClaimed) {
   const std::string id = submit(store);
   EXPECT_EQ(store.find(id)->state, JobState::queued);
   EXPECT_FALSE(store.find(id)->started_ms);
@@ -60,8 +95,7 @@ TEST(JobStoreTest, ASubmittedJobIsQueuedUntilItsTaskIsClaimed) {
   EXPECT_TRUE(store.find(id)->started_ms);
 }
 
-TEST(JobStoreTest, TheOldestJobIsClaimedFirstUnlessAnotherIsPreferred) {
-  JobStore store(":memory:");
+TEST_P(JobStoreTest, TheOldestJobIsClaimedFirstUnlessAnotherIsPreferred) {
   const std::string first = submit(store), second = submit(store), third = submit(store);
   EXPECT_EQ(store.claim(Priority::interactive, third)->job_id, third);
   EXPECT_EQ(store.claim(Priority::interactive, third)->job_id, first);
@@ -69,79 +103,72 @@ TEST(JobStoreTest, TheOldestJobIsClaimedFirstUnlessAnotherIsPreferred) {
   EXPECT_FALSE(store.claim(Priority::interactive));
 }
 
-TEST(JobStoreTest, ALeaseThatRanOutIsClaimedAgainAndItsFirstHolderIsRefused) {
-  Timed timed;
-  const std::string id = submit(timed.store);
-  const Task first = *timed.store.claim(Priority::interactive);
-  timed.now += 999;
-  EXPECT_FALSE(timed.store.claim(Priority::interactive));
-  timed.now += 2;
-  const Task second = *timed.store.claim(Priority::interactive);
+TEST_P(JobStoreTest, ALeaseThatRanOutIsClaimedAgainAndItsFirstHolderIsRefused) {
+  const std::string id = submit(store);
+  const Task first = *store.claim(Priority::interactive);
+  now += 999;
+  EXPECT_FALSE(store.claim(Priority::interactive));
+  now += 2;
+  const Task second = *store.claim(Priority::interactive);
   EXPECT_EQ(second.pass, first.pass);
   EXPECT_GT(second.fencing_token, first.fencing_token);
   EXPECT_EQ(second.attempts, 2);
 
-  EXPECT_FALSE(timed.store.renew(first));
-  EXPECT_FALSE(timed.store.complete(first, a_result(), {1, 4, 4}));
-  EXPECT_FALSE(timed.store.finish(first, a_result(), true, "{}", {}));
-  EXPECT_FALSE(timed.store.fail(first, "{}"));
-  EXPECT_FALSE(timed.store.release(first));
-  EXPECT_EQ(timed.store.find(id)->progress.samples, 0u);
-  EXPECT_TRUE(timed.store.complete(second, a_result(), {1, 4, 4}));
-  EXPECT_EQ(timed.store.find(id)->progress.samples, 4u);
+  EXPECT_FALSE(store.renew(first));
+  EXPECT_FALSE(store.complete(first, a_completion(), {1, 4, 4}));
+  EXPECT_FALSE(store.finish(first, a_completion(), "{}", {}));
+  EXPECT_FALSE(store.fail(first, "{}"));
+  EXPECT_FALSE(store.release(first));
+  EXPECT_EQ(store.find(id)->progress.samples, 0u);
+  EXPECT_TRUE(store.complete(second, a_completion(), {1, 4, 4}));
+  EXPECT_EQ(store.find(id)->progress.samples, 4u);
 }
 
-TEST(JobStoreTest, ARenewedLeaseDoesNotRunOut) {
-  Timed timed;
-  submit(timed.store);
-  const Task task = *timed.store.claim(Priority::interactive);
+TEST_P(JobStoreTest, ARenewedLeaseDoesNotRunOut) {
+  submit(store);
+  const Task task = *store.claim(Priority::interactive);
   for (int i = 0; i < 5; ++i) {
-    timed.now += 900;
-    EXPECT_TRUE(timed.store.renew(task));
-    EXPECT_FALSE(timed.store.claim(Priority::interactive));
+    now += 900;
+    EXPECT_TRUE(store.renew(task));
+    EXPECT_FALSE(store.claim(Priority::interactive));
   }
 }
 
-TEST(JobStoreTest, AClockSetBackNeitherLosesNorDoublesTasks) {
-  Timed timed;
-  const std::string first = submit(timed.store);
-  timed.now -= 500'000;
-  const std::string second = submit(timed.store);
+TEST_P(JobStoreTest, AClockSetBackNeitherLosesNorDoublesTasks) {
+  const std::string first = submit(store);
+  now -= 500'000;
+  const std::string second = submit(store);
   EXPECT_LT(first, second);
-  EXPECT_EQ(timed.store.claim(Priority::interactive)->job_id, first);
-  EXPECT_EQ(timed.store.claim(Priority::interactive)->job_id, second);
-  EXPECT_FALSE(timed.store.claim(Priority::interactive));
+  EXPECT_EQ(store.claim(Priority::interactive)->job_id, first);
+  EXPECT_EQ(store.claim(Priority::interactive)->job_id, second);
+  EXPECT_FALSE(store.claim(Priority::interactive));
 }
 
-TEST(JobStoreTest, CompletionStoresProgressAndPlansTheNextTask) {
-  JobStore store(":memory:");
+TEST_P(JobStoreTest, CompletionStoresProgressAndPlansTheNextTask) {
   const std::string id = submit(store);
-  EXPECT_TRUE(store.complete(*store.claim(Priority::interactive), a_result(1.5), {1, 4, 8}));
+  EXPECT_TRUE(store.complete(*store.claim(Priority::interactive), a_completion(1.5), {1, 4, 8}));
   EXPECT_EQ(store.find(id)->state, JobState::running);
   EXPECT_EQ(store.find(id)->progress.relative_error, 0.5);
   EXPECT_EQ(store.find(id)->progress.eta_seconds, 3);
   const Task next = *store.claim(Priority::interactive);
   EXPECT_EQ(next.pass, (Pass{1, 4, 8}));
-  EXPECT_TRUE(store.complete(next, a_result(2), {2, 12, 8}));
-  EXPECT_DOUBLE_EQ(store.traced_seconds(id), 3.5);
+  EXPECT_TRUE(store.complete(next, a_completion(2), {2, 12, 8}));
+  EXPECT_EQ(store.find(id)->progress.seconds, 2);
 }
 
-TEST(JobStoreTest, AResultThatComesTwiceCountsOnce) {
-  JobStore store(":memory:");
+TEST_P(JobStoreTest, AResultThatComesTwiceCountsOnce) {
   const std::string id = submit(store);
   const Task task = *store.claim(Priority::interactive);
-  EXPECT_TRUE(store.complete(task, a_result(), {1, 4, 4}));
-  EXPECT_FALSE(store.complete(task, a_result(), {1, 4, 4}));
-  EXPECT_DOUBLE_EQ(store.traced_seconds(id), 1);
+  EXPECT_TRUE(store.complete(task, a_completion(), {1, 4, 4}));
+  EXPECT_FALSE(store.complete(task, a_completion(), {1, 4, 4}));
   EXPECT_TRUE(store.claim(Priority::interactive));
   EXPECT_FALSE(store.claim(Priority::interactive));
 }
 
-TEST(JobStoreTest, AFinishedJobHasItsStatsAndNoMoreTasks) {
-  JobStore store(":memory:");
+TEST_P(JobStoreTest, AFinishedJobHasItsStatsAndNoMoreTasks) {
   const std::string id = submit(store);
   EXPECT_TRUE(
-      store.finish(*store.claim(Priority::interactive), a_result(), true, R"({"samples":4})", {}));
+      store.finish(*store.claim(Priority::interactive), a_completion(), R"({"samples":4})", {}));
   const Job job = *store.find(id);
   EXPECT_EQ(job.state, JobState::succeeded);
   EXPECT_EQ(job.stats, R"({"samples":4})");
@@ -150,68 +177,66 @@ TEST(JobStoreTest, AFinishedJobHasItsStatsAndNoMoreTasks) {
   EXPECT_FALSE(store.claim(Priority::interactive));
 }
 
-TEST(JobStoreTest, ACanceledJobRefusesTheResultOfItsTask) {
-  JobStore store(":memory:");
+TEST_P(JobStoreTest, ACanceledJobRefusesTheResultOfItsTask) {
   const std::string id = submit(store);
   const Task task = *store.claim(Priority::interactive);
-  EXPECT_EQ(store.cancel(id)->state, JobState::canceled);
+  store.cancel(id);
+  EXPECT_EQ(store.find(id)->state, JobState::canceled);
   EXPECT_FALSE(store.renew(task));
-  EXPECT_FALSE(store.finish(task, a_result(), true, "{}", {}));
+  EXPECT_FALSE(store.finish(task, a_completion(), "{}", {}));
   EXPECT_EQ(store.find(id)->state, JobState::canceled);
   EXPECT_FALSE(store.claim(Priority::interactive));
 }
 
-TEST(JobStoreTest, AnEndedJobStaysAsItEnded) {
-  JobStore store(":memory:");
+TEST_P(JobStoreTest, AnEndedJobStaysAsItEnded) {
   const std::string good = submit(store);
-  store.finish(*store.claim(Priority::interactive), a_result(), true, "{}", {});
-  EXPECT_EQ(store.cancel(good)->state, JobState::succeeded);
+  store.finish(*store.claim(Priority::interactive), a_completion(), "{}", {});
+  store.cancel(good);
+  EXPECT_EQ(store.find(good)->state, JobState::succeeded);
   const std::string bad = submit(store);
   store.fail(*store.claim(Priority::interactive), R"({"title":"no"})");
-  EXPECT_EQ(store.cancel(bad)->state, JobState::failed);
+  store.cancel(bad);
+  EXPECT_EQ(store.find(bad)->state, JobState::failed);
   EXPECT_EQ(store.find(bad)->error, R"({"title":"no"})");
-  EXPECT_FALSE(store.cancel("01ARZ3NDEKTSV4RRFFQ69G5FAV"));
+  store.cancel(unknown_id);
+  EXPECT_FALSE(store.find(unknown_id));
 }
 
-TEST(JobStoreTest, AReleasedTaskWaitsForItsDelayAndCountsAsAnAttemptOnlyIfToldSo) {
-  Timed timed;
-  const std::string id = submit(timed.store);
-  EXPECT_TRUE(timed.store.release(*timed.store.claim(Priority::interactive)));
-  EXPECT_EQ(timed.store.find(id)->state, JobState::queued);
-  const Task again = *timed.store.claim(Priority::interactive);
+TEST_P(JobStoreTest, AReleasedTaskWaitsForItsDelayAndCountsAsAnAttemptOnlyIfToldSo) {
+  const std::string id = submit(store);
+  EXPECT_TRUE(store.release(*store.claim(Priority::interactive)));
+  EXPECT_EQ(store.find(id)->state, JobState::queued);
+  const Task again = *store.claim(Priority::interactive);
   EXPECT_EQ(again.attempts, 1);
-  EXPECT_TRUE(timed.store.release(again, 200, true));
-  EXPECT_FALSE(timed.store.claim(Priority::interactive));
-  timed.now += 200;
-  EXPECT_EQ(timed.store.claim(Priority::interactive)->attempts, 2);
+  EXPECT_TRUE(store.release(again, 200, true));
+  EXPECT_FALSE(store.claim(Priority::interactive));
+  now += 200;
+  EXPECT_EQ(store.claim(Priority::interactive)->attempts, 2);
 }
 
-TEST(JobStoreTest, TheSameKeyAndRequestIsTheSameJobAndAnotherRequestIsRefused) {
-  JobStore store(":memory:");
-  const auto first = std::get<Submitted>(store.submit(a_job(R"({"a":1})", "key")));
-  const auto again = std::get<Submitted>(store.submit(a_job(R"({"a":1})", "key")));
+TEST_P(JobStoreTest, TheSameKeyAndRequestIsTheSameJobAndAnotherRequestIsRefused) {
+  const auto first = *store.submit(a_job(R"({"a":1})", "key"));
+  const auto again = *store.submit(a_job(R"({"a":1})", "key"));
   EXPECT_TRUE(first.created);
   EXPECT_FALSE(again.created);
-  EXPECT_EQ(first.job.id, again.job.id);
-  EXPECT_TRUE(
-      std::holds_alternative<IdempotencyMismatch>(store.submit(a_job(R"({"a":2})", "key"))));
-  EXPECT_NE(submit(store, a_job(R"({"a":1})", "other")), first.job.id);
-  EXPECT_NE(submit(store, a_job(R"({"a":1})")), first.job.id);
+  EXPECT_EQ(first.stored.id, again.stored.id);
+  EXPECT_EQ(store.submit(a_job(R"({"a":2})", "key")).problem().code,
+            api::ProblemCode::idempotency_mismatch);
+  EXPECT_NE(submit(store, a_job(R"({"a":1})", "other")), first.stored.id);
+  EXPECT_NE(submit(store, a_job(R"({"a":1})")), first.stored.id);
   EXPECT_EQ(store.list({}).size(), 3u);
 }
 
-TEST(JobStoreTest, ARemovedJobIsGoneWithItsTasksAndItsKey) {
-  JobStore store(":memory:");
+TEST_P(JobStoreTest, ARemovedJobIsGoneWithItsTasksAndItsKey) {
   const std::string id = submit(store, a_job("{}", "key"));
   EXPECT_TRUE(store.remove(id));
   EXPECT_FALSE(store.remove(id));
   EXPECT_FALSE(store.find(id));
   EXPECT_FALSE(store.claim(Priority::interactive));
-  EXPECT_TRUE(std::get<Submitted>(store.submit(a_job(R"({"other":1})", "key"))).created);
+  EXPECT_TRUE(store.submit(a_job(R"({"other":1})", "key"))->created);
 }
 
-TEST(JobStoreTest, ListsNewestFirstByPageAndByState) {
-  JobStore store(":memory:");
+TEST_P(JobStoreTest, ListsNewestFirstByPageAndByState) {
   const std::string a = submit(store), b = submit(store), c = submit(store), d = submit(store);
   store.cancel(b);
   const auto ids = [&](const JobFilter& filter) {
@@ -226,117 +251,218 @@ TEST(JobStoreTest, ListsNewestFirstByPageAndByState) {
   EXPECT_THAT(ids({JobState::canceled, {}, 50}), ElementsAre(b));
 }
 
-TEST(JobStoreTest, AReopenedStoreFreesTheTasksThatTheDeadProcessHeld) {
-  const TempFolder folder;
-  std::string id;
-  std::optional<Task> task;
-  {
-    JobStore store(folder / "jobs.sqlite");
-    id = submit(store);
-    store.complete(*store.claim(Priority::interactive), a_result(), {1, 4, 4});
-    task = store.claim(Priority::interactive);
+TEST_P(JobStoreTest, AQueueThatIsFullTakesWhatIsThereAlreadyOnly) {
+  for (int i = 0; i < 59; ++i) submit(store);
+  const NewJob last = a_job();
+  EXPECT_EQ(store.submit(a_sweep({1, 1})).problem().code, api::ProblemCode::queue_full);
+  submit(store, last);
+  EXPECT_EQ(store.submit(a_job()).problem().code, api::ProblemCode::queue_full);
+  const Task task = *store.claim(Priority::interactive);
+  const std::string content = store.pictures(task.job_id).at(0).content;
+  EXPECT_TRUE(store.finish(task, a_completion(), "{}", {{content, "a.exr", 10, 12, "{}"}}));
+  submit(store);
+  NewJob again = a_job();
+  EXPECT_EQ(store.submit(again).problem().code, api::ProblemCode::queue_full);
+  again.content = content;
+  const auto known = *store.submit(again);
+  EXPECT_EQ(known.stored.state, JobState::succeeded);
+  EXPECT_TRUE(known.stored.cached);
+}
+
+TEST_P(JobStoreTest, ARenderThatTakesLongBecomesBatchWork) {
+  submit(store);
+  EXPECT_TRUE(store.complete(*store.claim(Priority::interactive), a_completion(9), {1, 4, 4}));
+  EXPECT_FALSE(store.claim(Priority::batch));
+  EXPECT_TRUE(store.complete(*store.claim(Priority::interactive), a_completion(11), {2, 8, 4}));
+  EXPECT_FALSE(store.claim(Priority::interactive));
+  EXPECT_TRUE(store.claim(Priority::batch));
+}
+
+TEST_P(JobStoreTest, ATaskWhoseTimeIsOverFinishesItsJobWithoutItsPass) {
+  const std::string id = submit(store);
+  Completion completion = a_completion(7);
+  completion.pass_seconds.reset();
+  EXPECT_TRUE(store.finish(*store.claim(Priority::interactive), completion, "{}", {}));
+  EXPECT_EQ(store.find(id)->state, JobState::succeeded);
+  EXPECT_EQ(store.find(id)->progress.seconds, 7);
+}
+
+TEST_P(JobStoreTest, ASweepIsBatchWorkAndEndsWithItsLastImage) {
+  const NewSweep asked = a_sweep({2, 1, 1}, "key");
+  const auto submitted = *store.submit(asked);
+  const std::string id = submitted.stored.id;
+  EXPECT_EQ(submitted.stored.points, 4u);
+  EXPECT_EQ(submitted.stored.images, 3u);
+  EXPECT_EQ(store.submit(asked)->stored.id, id);
+  EXPECT_FALSE(store.claim(Priority::interactive));
+  EXPECT_TRUE(store.finish(*store.claim(Priority::batch), a_completion(), "{}", {}));
+  EXPECT_EQ(store.find_sweep(id)->state, JobState::running);
+  EXPECT_TRUE(store.release(*store.claim(Priority::batch)));
+  EXPECT_TRUE(store.fail(*store.claim(Priority::batch), R"({"title":"no"})"));
+  EXPECT_EQ(store.find_sweep(id)->state, JobState::running);
+  EXPECT_FALSE(store.find_sweep(id)->finished_ms);
+  EXPECT_TRUE(store.finish(*store.claim(Priority::batch), a_completion(), "{}", {}));
+  EXPECT_EQ(store.find_sweep(id)->state, JobState::succeeded);
+  EXPECT_TRUE(store.find_sweep(id)->finished_ms);
+  const auto images = store.sweep_images(id);
+  ASSERT_THAT(images, SizeIs(3));
+  EXPECT_THAT(images[0].points, ElementsAre(0, 1));
+  EXPECT_EQ(images[1].state, JobState::failed);
+  EXPECT_EQ(images[1].error, R"({"title":"no"})");
+  EXPECT_EQ(store.picture_of_point(id, 2)->state, JobState::failed);
+  EXPECT_EQ(store.picture_of_point(id, 3)->content, asked.images[2][0].content);
+  EXPECT_FALSE(store.picture_of_point(id, 4));
+  EXPECT_THAT(store.list({}), IsEmpty()) << "its images are no renders";
+  EXPECT_EQ(store.list_sweeps({JobState::succeeded, {}, 50}).at(0).id, id);
+  EXPECT_THAT(store.list_sweeps({JobState::queued, {}, 50}), IsEmpty());
+}
+
+TEST_P(JobStoreTest, ASweepWithoutAnySuccessHasFailedUnlessAllWasCanceled) {
+  const auto sweep = [&](std::vector<int> lanes) {
+    return store.submit(a_sweep(lanes))->stored.id;
+  };
+  const std::string failed = sweep({1, 1});
+  store.fail(*store.claim(Priority::batch), "{}");
+  store.cancel(store.claim(Priority::batch)->job_id);
+  EXPECT_EQ(store.find_sweep(failed)->state, JobState::failed);
+  const std::string canceled = sweep({1, 1});
+  for (int i = 0; i < 2; ++i) store.cancel(store.claim(Priority::batch)->job_id);
+  EXPECT_EQ(store.find_sweep(canceled)->state, JobState::canceled);
+}
+
+TEST_P(JobStoreTest, ACanceledSweepKeepsWhatHasEndedAndHasNoMoreTasks) {
+  const std::string id = store.submit(a_sweep({1, 1, 1}))->stored.id;
+  store.finish(*store.claim(Priority::batch), a_completion(), "{}", {});
+  const Task running = *store.claim(Priority::batch);
+  store.cancel(id);
+  EXPECT_EQ(store.find_sweep(id)->state, JobState::canceled);
+  EXPECT_FALSE(store.finish(running, a_completion(), "{}", {}));
+  EXPECT_FALSE(store.claim(Priority::batch));
+  std::vector<JobState> states;
+  for (const SweepImageState& image : store.sweep_images(id)) states.push_back(image.state);
+  EXPECT_THAT(states, ElementsAre(JobState::succeeded, JobState::canceled, JobState::canceled));
+}
+
+TEST_P(JobStoreTest, RemovalTellsTheResultsThatNothingElseRefersTo) {
+  const NewSweep sweep = a_sweep({2});
+  const std::string id = store.submit(sweep)->stored.id;
+  std::vector<StoredResult> results;
+  for (const Picture& lane : sweep.images[0])
+    results.push_back({lane.content, "a.exr", 10, 12, R"({"made":1})"});
+  EXPECT_TRUE(store.finish(*store.claim(Priority::batch), a_completion(), "{}", results));
+  NewJob render = a_job();
+  render.content = results[1].content;
+  const auto known = *store.submit(render);
+  EXPECT_TRUE(known.stored.cached);
+  EXPECT_EQ(known.stored.stats, R"({"made":1})");
+
+  const auto unused = store.remove(id);
+  ASSERT_TRUE(unused);
+  ASSERT_THAT(*unused, SizeIs(1));
+  EXPECT_EQ(unused->at(0).content, results[0].content);
+  EXPECT_FALSE(store.find_sweep(id));
+  EXPECT_THAT(store.sweep_images(id), IsEmpty());
+  EXPECT_THAT(store.events_after(id, 0), IsEmpty());
+  EXPECT_FALSE(store.find_result(results[0].content));
+  EXPECT_TRUE(store.find_result(results[1].content));
+  EXPECT_THAT(store.remove(known.stored.id).value(), SizeIs(1));
+  EXPECT_EQ(store.result_bytes(), 0u);
+}
+
+TEST_P(JobStoreTest, OfResultsOfOneContentTheFirstStays) {
+  const NewJob asked = a_job();
+  NewJob same = a_job();
+  same.content = asked.content;
+  const std::string first = submit(store, asked), second = submit(store, same);
+  const Task late = *store.claim(Priority::interactive, second);
+  const Task early = *store.claim(Priority::interactive);
+  EXPECT_FALSE(store.finish_from_results(late));
+  const StoredResult result{asked.content, "early.exr", {}, 12, "{}"};
+  EXPECT_TRUE(store.finish(early, a_completion(), "{}", {result}));
+  EXPECT_TRUE(store.finish_from_results(late));
+  EXPECT_TRUE(store.find(second)->cached);
+  EXPECT_EQ(store.find_result(asked.content)->image, "early.exr");
+  EXPECT_FALSE(store.find_result(asked.content)->image_bytes);
+  EXPECT_FALSE(store.remove_result({asked.content, "late.exr", {}, 0, ""}));
+  EXPECT_TRUE(store.remove_result(result));
+  EXPECT_FALSE(store.remove_result(result));
+}
+
+TEST_P(JobStoreTest, ResultsAreToldByTheirLastUse) {
+  std::vector<std::string> contents;
+  for (int i = 0; i < 3; ++i) {
+    now += 100'000;
+    const NewJob job = a_job();
+    contents.push_back(job.content);
+    submit(store, job);
+    store.finish(*store.claim(Priority::interactive), a_completion(), "{}",
+                 {{job.content, "a.exr", 10, 10, "{}"}});
   }
-  JobStore store(folder / "jobs.sqlite");
-  EXPECT_EQ(store.find(id)->state, JobState::queued);
-  EXPECT_EQ(store.find(id)->progress.samples, 4u);
-  EXPECT_DOUBLE_EQ(store.traced_seconds(id), 1);
-  EXPECT_FALSE(store.complete(*task, a_result(), {2, 8, 4})) << "nobody holds it now";
-  const Task again = *store.claim(Priority::interactive);
-  EXPECT_EQ(again.pass, task->pass);
-  EXPECT_EQ(again.attempts, 2);
-  EXPECT_LT(id, submit(store)) << "ids keep rising over a restart";
+  now += 100'000;
+  store.touch_result(contents[0]);
+  store.resize_result(contents[1], 15);
+  EXPECT_EQ(store.result_bytes(), 35u);
+  const auto oldest = [&](std::uint64_t bytes) {
+    std::vector<std::string> told;
+    for (const StoredResult& result : store.least_recently_used(bytes))
+      told.push_back(result.content);
+    return told;
+  };
+  EXPECT_THAT(oldest(0), IsEmpty());
+  EXPECT_THAT(oldest(15), ElementsAre(contents[1]));
+  EXPECT_THAT(oldest(16), ElementsAre(contents[1], contents[2]));
+  EXPECT_THAT(oldest(1000), ElementsAre(contents[1], contents[2], contents[0]));
 }
 
-TEST(JobStoreTest, WhatWasAcceptedSurvivesAKill) {
-  const TempFolder folder;
-  const pid_t child = fork();
-  if (child == 0) {
-    JobStore store(folder / "jobs.sqlite");
-    for (int i = 0; i < 20; ++i) submit(store);
-    store.finish(*store.claim(Priority::interactive), a_result(), true, "{}", {});
-    store.claim(Priority::interactive);
-    ::kill(::getpid(), SIGKILL);
+TEST_P(JobStoreTest, EventsTellTheLifeOfARenderInOrder) {
+  const std::string id = submit(store);
+  store.complete(*store.claim(Priority::interactive), a_completion(), {1, 4, 4});
+  store.finish(*store.claim(Priority::interactive), a_completion(), "{}", {});
+  std::vector<std::string> types;
+  std::uint64_t number = 0;
+  for (const Event& event : store.events_after(id, 0)) {
+    EXPECT_EQ(event.number, ++number);
+    types.push_back(event.type);
   }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status));
-  JobStore store(folder / "jobs.sqlite");
-  EXPECT_EQ(store.list({JobState::queued, {}, 100}).size(), 19u);
-  EXPECT_EQ(store.list({JobState::succeeded, {}, 100}).size(), 1u);
-  int claimable = 0;
-  while (store.claim(Priority::interactive)) ++claimable;
-  EXPECT_EQ(claimable, 19);
+  EXPECT_THAT(types, ElementsAre("state", "state", "progress", "state"));
+  EXPECT_THAT(store.events_after(id, 3), SizeIs(1));
+  EXPECT_THAT(store.events_after(id, ~std::uint64_t{0}), IsEmpty());
+  EXPECT_THAT(store.events_after(unknown_id, 0), IsEmpty());
 }
 
-std::optional<StoreError::Kind> open_failure(const std::filesystem::path& file) {
-  try {
-    const JobStore store(file);
-  } catch (const StoreError& error) {
-    EXPECT_NE(std::string(error.what()).find("job store"), std::string::npos) << error.what();
-    return error.kind;
-  }
-  return std::nullopt;
+TEST_P(JobStoreTest, EventsOfASweepTellItsPoints) {
+  const NewSweep sweep = a_sweep({2, 1});
+  const std::string id = store.submit(sweep)->stored.id;
+  store.claim(Priority::batch);
+  store.cancel(id);
+  const std::vector<Event> events = store.events_after(id, 0);
+  const auto told = [&](std::size_t event) { return events.at(event).type + events[event].data; };
+  ASSERT_THAT(events, SizeIs(4));
+  EXPECT_THAT(told(0), MatchesRegex(R"(state\{.*"state":"queued"\})"));
+  EXPECT_THAT(told(1), MatchesRegex(R"(points\{.*"points":\[0,1\],"state":"running"\})"));
+  EXPECT_THAT(told(2), MatchesRegex(R"(state\{.*"state":"running"\})"));
+  EXPECT_THAT(told(3), MatchesRegex(R"(state\{.*"state":"canceled"\})"));
 }
 
-TEST(JobStoreTest, AFileThatIsNoStoreIsRefused) {
-  const TempFolder folder;
-  test::write_file(folder / "jobs.sqlite", std::string(10'000, 'x'));
-  EXPECT_EQ(open_failure(folder / "jobs.sqlite"), StoreError::Kind::corrupt);
+TEST_P(JobStoreTest, GaugesCountWhatItHolds) {
+  const std::string render = submit(store);
+  submit(store);
+  EXPECT_TRUE(store.submit(a_sweep({1, 1, 1})));
+  store.finish(*store.claim(Priority::interactive), a_completion(), "{}",
+               {{a_job().content, "a.exr", 10, 12, "{}"}});
+  now += 2000;
+  const QueueGauges gauges = store.gauges();
+  EXPECT_EQ(gauges.jobs[static_cast<std::size_t>(JobState::queued)], 4u);
+  EXPECT_EQ(gauges.jobs[static_cast<std::size_t>(JobState::succeeded)], 1u);
+  EXPECT_EQ(gauges.sweeps[static_cast<std::size_t>(JobState::queued)], 1u);
+  EXPECT_THAT(gauges.waiting_tasks, ElementsAre(1, 3));
+  EXPECT_EQ(gauges.oldest_waiting_s, 2);
+  EXPECT_EQ(gauges.results, 1u);
+  EXPECT_EQ(gauges.result_bytes, 12u);
+  EXPECT_NO_THROW(store.check_writable());
 }
 
-TEST(JobStoreTest, AStoreCutShortIsRefused) {
-  const TempFolder folder;
-  {
-    JobStore store(folder / "jobs.sqlite");
-    for (int i = 0; i < 200; ++i) submit(store, a_job("{\"a\":\"" + std::string(500, 'a') + "\"}"));
-  }
-  std::filesystem::resize_file(folder / "jobs.sqlite",
-                               std::filesystem::file_size(folder / "jobs.sqlite") / 2);
-  EXPECT_EQ(open_failure(folder / "jobs.sqlite"), StoreError::Kind::corrupt);
-}
-
-TEST(JobStoreTest, AStoreOfANewerServiceIsRefused) {
-  const TempFolder folder;
-  { const JobStore store(folder / "jobs.sqlite"); }
-  // Bytes 60 to 63 of the file are its user version (SQLite file format, 1.3).
-  std::fstream file(folder / "jobs.sqlite", std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(63).put(99);
-  file.close();
-  EXPECT_EQ(open_failure(folder / "jobs.sqlite"), StoreError::Kind::unavailable);
-}
-
-TEST(JobStoreTest, AStoreWhoseFolderIsNotThereIsRefused) {
-  EXPECT_EQ(open_failure("/nowhere/jobs.sqlite"), StoreError::Kind::unavailable);
-}
-
-TEST(JobStoreTest, ADiskThatRefusesIsAnErrorAndLeavesTheStoreAsItWas) {
-  const TempFolder folder;
-  const pid_t child = fork();
-  if (child == 0) {
-    JobStore store(folder / "jobs.sqlite");
-    for (int i = 0; i < 10; ++i) submit(store);
-    ::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{400'000, 400'000};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-    const NewJob large = a_job("{\"a\":\"" + std::string(50'000, 'a') + "\"}");
-    int accepted = 10;
-    try {
-      for (; accepted < 100; ++accepted) submit(store, large);
-      ::_exit(1);  // the limit was not felt
-    } catch (const StoreError&) {
-    }
-    ::_exit(std::ssize(store.list({{}, {}, 1000})) == accepted ? 0 : 2);
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 0);
-  EXPECT_FALSE(open_failure(folder / "jobs.sqlite"));
-}
-
-TEST(JobStoreTest, ManyThreadsClaimEachTaskOnce) {
-  const TempFolder folder;
-  JobStore store(folder / "jobs.sqlite");
+TEST_P(JobStoreTest, ManyThreadsClaimEachTaskOnce) {
   constexpr int jobs = 60;
   for (int i = 0; i < jobs; ++i) submit(store);
   std::mutex mutex;
@@ -346,7 +472,7 @@ TEST(JobStoreTest, ManyThreadsClaimEachTaskOnce) {
     for (int i = 0; i < 4; ++i)
       threads.emplace_back([&] {
         while (const std::optional<Task> task = store.claim(Priority::interactive)) {
-          EXPECT_TRUE(store.finish(*task, a_result(), true, "{}", {}));
+          EXPECT_TRUE(store.finish(*task, a_completion(), "{}", {}));
           const std::lock_guard lock(mutex);
           claimed.insert(task->job_id);
         }
@@ -359,40 +485,32 @@ TEST(JobStoreTest, ManyThreadsClaimEachTaskOnce) {
   EXPECT_EQ(std::set(claimed.begin(), claimed.end()).size(), std::size_t(jobs));
 }
 
-TEST(DataFolderTest, ServesOneServiceAtATime) {
-  const TempFolder folder;
-  const auto first = std::make_unique<DataFolder>(folder / "data");
-  EXPECT_THROW(DataFolder(folder / "data"), StoreError);
-}
-
-TEST(DataFolderTest, IsFreeAgainWhenItsServiceEnds) {
-  const TempFolder folder;
-  { const DataFolder first(folder / "data"); }
-  EXPECT_NO_THROW(DataFolder(folder / "data"));
-}
-
-TEST(DataFolderTest, ThatCannotBeMadeIsAnError) {
-  EXPECT_THROW(DataFolder("/dev/null/x"), StoreError);
-}
-
-TEST(IdTest, SortByCreationWithinAMillisecondAndWhenTheClockIsSetBack) {
-  IdSource ids;
-  std::string last;
-  for (int i = 0; i < 1000; ++i) {
-    const std::string id = ids.next(i < 500 ? 5'000'000 : 4'000'000);
-    EXPECT_TRUE(is_id(id)) << id;
-    EXPECT_LT(last, id);
-    last = id;
+TEST_P(DurableJobStoreTest, WhatWasAcceptedSurvivesAKill) {
+  close();
+  const pid_t child = fork();
+  if (child == 0) {
+    const auto dying = open();
+    for (int i = 0; i < 20; ++i) submit(*dying);
+    dying->finish(*dying->claim(Priority::interactive), a_completion(), "{}", {});
+    dying->claim(Priority::interactive);
+    ::kill(::getpid(), SIGKILL);
   }
-  EXPECT_LT(last, IdSource(last).next(0));
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  now += 1001;  // what it had claimed is free by now
+  const auto reopened = open();
+  EXPECT_EQ(reopened->list({JobState::succeeded, {}, 100}).size(), 1u);
+  int claimable = 0;
+  while (reopened->claim(Priority::interactive)) ++claimable;
+  EXPECT_EQ(claimable, 19);
 }
 
-TEST(IdTest, NothingElseIsAnId) {
-  for (const char* text :
-       {"", "..", "../../etc/passwd", "01ARZ3NDEKTSV4RRFFQ69G5FA", "01arz3ndektsv4rrffq69g5fav",
-        "81ARZ3NDEKTSV4RRFFQ69G5FAV", "01ARZ3NDEKTSV4RRFFQ69G5F/V", "01ARZ3NDEKTSV4RRFFQ69G5FAVX"})
-    EXPECT_FALSE(is_id(text)) << text;
-  EXPECT_TRUE(is_id("01ARZ3NDEKTSV4RRFFQ69G5FAV"));
+TEST_P(DurableJobStoreTest, IdsKeepRisingWhenItIsOpenedAgain) {
+  const std::string first = submit(store);
+  close();
+  now -= 1000;
+  EXPECT_LT(first, submit(*open()));
 }
 
 }  // namespace

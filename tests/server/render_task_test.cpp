@@ -251,8 +251,8 @@ TEST(RenderTaskTest, ARenderThatEndsTheProcessAgainAndAgainIsGivenUp) {
     id = tested.submit(small_request(4)).id;
   }
   for (int i = 0; i < 20; ++i) {
-    JobStore store(folder / "jobs.sqlite");
-    ASSERT_TRUE(store.claim(Priority::interactive));  // and the process dies with it
+    const auto store = open_job_store(folder / "jobs.sqlite");
+    ASSERT_TRUE(store->claim(Priority::interactive));  // and the process dies with it
   }
   FakeRenderer renderer;
   TestService tested(folder.path(), renderer.engine());

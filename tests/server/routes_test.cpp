@@ -255,8 +255,8 @@ TEST(RoutesTest, AFailureOfOursTellsNothingOfItself) {
   const std::string location = posted->get_header_value("Location");
   // A store whose row is no JSON any more.
   NewJob broken{"not json", "not json either", {}, 4, Pass{0, 0, 4}, "broken"};
-  const auto submitted = std::get<Submitted>(served.service.store.submit(broken));
-  const auto answer = served.client.Get("/v1/renders/" + submitted.job.id);
+  const auto submitted = *served.service.store.submit(broken);
+  const auto answer = served.client.Get("/v1/renders/" + submitted.stored.id);
   EXPECT_EQ(answer->status, 500);
   EXPECT_EQ(type_of(answer), "internal");
   std::string all = answer->body;

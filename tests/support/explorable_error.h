@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_develop.h"
 #include "renderer/optics/material_cube.h"
 #include "renderer/render.h"
 #include "renderer/scene/scene.h"
@@ -20,7 +20,7 @@ struct ExplorableError {
 };
 
 /// The picture through an absorber, straight from the bins of the traced film.
-inline Image develop_bins(const Film& film, const ExplorableBins& bins, const Lane& lane) {
+inline Image develop_bins(const Film& film, const LengthBins& bins, const Lane& lane) {
   Image developed(film.width, film.height);
   for (int bin = 0; bin < bins.count(); ++bin) {
     const Image light = develop(film, bin);

@@ -36,11 +36,10 @@ json index_entry(const Figure& figure, const fs::path& folder) {
   throw std::runtime_error("no figure " + figure.name);
 }
 
-template <class Result>
-Result accepted(std::variant<Result, api::Problem> parsed, const std::string& file) {
-  if (const auto* problem = std::get_if<api::Problem>(&parsed))
-    throw std::runtime_error(file + ": " + to_text(*problem));
-  return std::get<Result>(std::move(parsed));
+template <class T>
+T accepted(api::Result<T> parsed, const std::string& file) {
+  if (!parsed) throw std::runtime_error(file + ": " + to_text(parsed.problem()));
+  return *std::move(parsed);
 }
 
 RenderResult traced(const SceneSpec& spec, const Quality& quality, EnvironmentCache& environments,

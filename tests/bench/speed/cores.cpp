@@ -1,8 +1,8 @@
 // The same render on more threads.
 
 #include <algorithm>
-#include <thread>
 
+#include "renderer/base/parallel.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
 
@@ -17,7 +17,7 @@ Tables cores(Run& run) {
   Table table{"cores", "Cores",
               "Wall seconds of a render at 256 × 256 pixels over the number of threads; the median "
               "of interleaved repetitions. Two threads must be 1.9 times as fast as one."};
-  const int available = static_cast<int>(std::thread::hardware_concurrency());
+  const int available = thread_count(0);
   if (available < 2) {
     table.remark = "This machine has one core: nothing measured.";
     return {table};

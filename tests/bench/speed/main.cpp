@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "renderer/base/parallel.h"
 #include "tests/bench/report/files.h"
 #include "tests/bench/speed/document.h"
 #include "tests/bench/speed/guard.h"
@@ -48,8 +48,7 @@ Report measure(const Run& settings, const std::vector<std::string>& only) {
   Report report;
   report.effort = settings.effort;
   report.seed = settings.seed;
-  report.threads = settings.threads > 0 ? settings.threads
-                                        : static_cast<int>(std::thread::hardware_concurrency());
+  report.threads = translucube::thread_count(settings.threads);
   report.machine = processor();
   const double start = process_cpu_seconds();
   std::uint64_t index = 0;

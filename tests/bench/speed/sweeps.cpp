@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "renderer/film/explorable.h"
+#include "renderer/film/explorable_develop.h"
 #include "renderer/optics/material_cube.h"
 #include "tests/bench/report/files.h"
 #include "tests/bench/speed/images.h"

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "server/store/sqlite/job_store_sqlite.h"
+#include "server/store/sqlite/connection.h"
 
 namespace translucube::server {
 

@@ -1,6 +1,8 @@
-#include "server/store/sqlite/job_store_rows.h"
+#include "server/store/sqlite/rows.h"
 
 #include <limits>
+
+#include "server/store/store_error.h"
 
 namespace translucube::server::rows {
 
@@ -14,7 +16,7 @@ api::JobState state_of(const std::string& name) {
   return *state;
 }
 
-Job job_of(const Statement& row) {
+Job Query<Job>::read(const Statement& row) {
   Job job{.id = row.text(0),
           .state = state_of(row.text(1)),
           .request = row.text(2),
@@ -39,17 +41,33 @@ Job job_of(const Statement& row) {
   return job;
 }
 
-void insert_task(sql::Connection& writer, const std::string& job_id, const Pass& pass,
-                 Priority priority) {
-  Statement(writer,
-            "INSERT INTO tasks(job_id, pass_index, first_sample, sample_count, state, priority) "
-            "VALUES (?, ?, ?, ?, 'ready', ?)")
-      .bind(job_id, pass.index, pass.first_sample, pass.count, static_cast<int>(priority))
-      .run();
+StoredSweep Query<StoredSweep>::read(const Statement& row) {
+  return {row.text(0),
+          state_of(row.text(1)),
+          row.text(2),
+          row.integer(3),
+          row.optional_integer(4),
+          row.optional_integer(5),
+          static_cast<std::uint32_t>(row.integer(6)),
+          static_cast<std::uint32_t>(row.integer(7))};
 }
 
-void delete_open_tasks(sql::Connection& writer, const std::string& job_id) {
-  Statement(writer, "DELETE FROM tasks WHERE job_id = ? AND state <> 'done'").bind(job_id).run();
+StoredResult Query<StoredResult>::read(const Statement& row) {
+  StoredResult result{
+      row.text(0), row.text(1), {}, static_cast<std::uint64_t>(row.integer(3)), row.text(4)};
+  if (const auto bytes = row.optional_integer(2))
+    result.image_bytes = static_cast<std::uint64_t>(*bytes);
+  return result;
+}
+
+std::vector<Picture> pictures(sql::Connection& connection, const std::string& job_id) {
+  Statement statement(connection,
+                      "SELECT point, content FROM pictures WHERE job_id = ? ORDER BY lane");
+  statement.bind(job_id);
+  std::vector<Picture> lanes;
+  while (statement.step())
+    lanes.push_back({static_cast<std::uint32_t>(statement.integer(0)), statement.text(1)});
+  return lanes;
 }
 
 api::StateCounts point_counts(sql::Connection& connection, const std::string& id) {
@@ -63,13 +81,21 @@ api::StateCounts point_counts(sql::Connection& connection, const std::string& id
   return counts;
 }
 
-std::vector<std::string> contents_of(sql::Connection& writer, const std::string& where,
-                                     const std::string& id) {
-  Statement statement(writer, "SELECT DISTINCT content FROM pictures WHERE " + where);
-  statement.bind(id);
-  std::vector<std::string> contents;
-  while (statement.step()) contents.push_back(statement.text(0));
-  return contents;
+void insert_task(sql::Connection& writer, const std::string& job_id, const Pass& pass,
+                 Priority priority) {
+  Statement(writer,
+            "INSERT INTO tasks(job_id, pass_index, first_sample, sample_count, state, priority) "
+            "VALUES (?, ?, ?, ?, 'ready', ?)")
+      .bind(job_id, pass.index, pass.first_sample, pass.count, static_cast<int>(priority))
+      .run();
+}
+
+void delete_open_tasks(sql::Connection& writer, const std::string& id) {
+  Statement(writer,
+            "DELETE FROM tasks WHERE state <> 'done' AND job_id IN "
+            "(SELECT id FROM jobs WHERE id = ?1 OR sweep_id = ?1)")
+      .bind(id)
+      .run();
 }
 
 }  // namespace translucube::server::rows

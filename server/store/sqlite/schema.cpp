@@ -1,6 +1,6 @@
-#include "server/store/sqlite/job_store_schema.h"
+#include "server/store/sqlite/schema.h"
 
-#include "server/store/job_store.h"
+#include "server/store/store_error.h"
 
 namespace translucube::server {
 namespace {

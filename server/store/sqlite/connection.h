@@ -1,7 +1,7 @@
 #pragma once
 
-// SQLite under RAII, for job_store.cpp alone. job_store_sqlite.cpp is the only file that includes
-// sqlite3.h; the SQL itself is in job_store.cpp.
+// SQLite under RAII. connection.cpp is the only file that includes sqlite3.h; no SQL stands outside
+// of this folder.
 
 #include <cstdint>
 #include <filesystem>
@@ -23,9 +23,9 @@ struct FinalizeStatement {
 };
 using PreparedStatement = std::unique_ptr<sqlite3_stmt, FinalizeStatement>;
 
-/// One SQLite connection, used by one thread at a time: hold `mutex` from the first statement of a
-/// piece of work to the end of the last. Statements stay prepared for the next use of their text:
-/// to prepare one takes longer than to look up a row.
+/// One SQLite connection, used by one thread at a time: hold `mutex`, or a Transaction, from the
+/// first statement of a piece of work to the end of the last. Statements stay prepared for the next
+/// use of their text: to prepare one takes longer than to look up a row.
 class Connection {
  public:
   enum class Access { read_write, read_only };
@@ -97,30 +97,31 @@ class Statement {
   int next_parameter_ = 1;
 };
 
-/// While it lives, commits outlive the process but not a power cut, and wait for no disk. For what
-/// was promised to nobody; made outside of a transaction.
-class UnsyncedCommits {
- public:
-  explicit UnsyncedCommits(Connection& connection);
-  ~UnsyncedCommits();
-  UnsyncedCommits(const UnsyncedCommits&) = delete;
-  UnsyncedCommits& operator=(const UnsyncedCommits&) = delete;
+/// How much a commit survives: the end of the process, or a power cut as well, which waits for the
+/// disk.
+enum class Durability { process, power_cut };
 
- private:
-  Connection& connection_;
-};
-
-/// A write transaction: rolled back unless committed.
+/// A write transaction, rolled back unless committed. It holds the connection's mutex.
 class Transaction {
  public:
-  explicit Transaction(Connection& connection);
+  explicit Transaction(Connection& connection, Durability durability = Durability::power_cut);
   ~Transaction();
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
   void commit();
 
  private:
+  /// While it lives, commits wait for no disk.
+  struct Unsynced {
+    Connection& connection;
+    explicit Unsynced(Connection& c);
+    ~Unsynced();
+    Unsynced(const Unsynced&) = delete;
+    Unsynced& operator=(const Unsynced&) = delete;
+  };
+  std::unique_lock<std::mutex> lock_;
   Connection& connection_;
+  std::optional<Unsynced> unsynced_;
   bool open_ = true;
 };
 

@@ -1,10 +1,10 @@
-#include "server/store/sqlite/job_store_sqlite.h"
+#include "server/store/sqlite/connection.h"
 
 #include <sqlite3.h>
 
 #include <cstdlib>
 
-#include "server/store/job_store.h"
+#include "server/store/store_error.h"
 
 namespace translucube::server::sql {
 namespace {
@@ -124,18 +124,20 @@ std::optional<double> Statement::optional_real(int column) const {
   return is_null(column) ? std::nullopt : std::optional(real(column));
 }
 
-UnsyncedCommits::UnsyncedCommits(Connection& connection) : connection_(connection) {
-  connection_.execute("PRAGMA synchronous = NORMAL");
+Transaction::Unsynced::Unsynced(Connection& c) : connection(c) {
+  connection.execute("PRAGMA synchronous = NORMAL");
 }
 
-UnsyncedCommits::~UnsyncedCommits() {
+Transaction::Unsynced::~Unsynced() {
   const int code =
-      sqlite3_exec(connection_.handle(), "PRAGMA synchronous = FULL", nullptr, nullptr, nullptr);
+      sqlite3_exec(connection.handle(), "PRAGMA synchronous = FULL", nullptr, nullptr, nullptr);
   // No promise may be made on such a connection; the store survives the end of the process.
   if (code != SQLITE_OK) std::abort();
 }
 
-Transaction::Transaction(Connection& connection) : connection_(connection) {
+Transaction::Transaction(Connection& connection, Durability durability)
+    : lock_(connection.mutex), connection_(connection) {
+  if (durability == Durability::process) unsynced_.emplace(connection);
   connection_.execute("BEGIN IMMEDIATE");
 }
 

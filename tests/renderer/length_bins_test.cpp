@@ -1,12 +1,14 @@
 // Absorption developed from bins of path length against the exact operators.
 
+#include "renderer/film/absorption.h"
+#include "renderer/film/length_bins.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
 #include "renderer/base/half.h"
-#include "renderer/film/explorable.h"
 #include "tests/support/absorbers.h"
 
 namespace translucube {
@@ -41,7 +43,7 @@ SpreadError spread_error(const Lane& lane, const BinSpread& spread, double from,
   return error;
 }
 
-TEST(ExplorableBins, WeightsOfEveryLengthAddUpToOne) {
+TEST(LengthBins, WeightsOfEveryLengthAddUpToOne) {
   const BinSpread spread;
   for (double length = 1e-9; length < 1e6; length *= 1.01) {
     const BinWeights s = spread(length);
@@ -51,7 +53,7 @@ TEST(ExplorableBins, WeightsOfEveryLengthAddUpToOne) {
   }
 }
 
-TEST(ExplorableBins, WhatIsNeverInsideHasABinOfItsOwn) {
+TEST(LengthBins, WhatIsNeverInsideHasABinOfItsOwn) {
   const BinSpread spread;
   EXPECT_EQ(spread(0).bin, 0);
   EXPECT_EQ(spread(0).weights, (std::array<float, 4>{1, 0, 0, 0}));
@@ -59,16 +61,16 @@ TEST(ExplorableBins, WhatIsNeverInsideHasABinOfItsOwn) {
   EXPECT_EQ(spread(shortest_length).weights, (std::array<float, 4>{1, 0, 0, 0}));
 }
 
-TEST(ExplorableBins, LengthsAtTheNodesGoToThemAlone) {
+TEST(LengthBins, LengthsAtTheNodesGoToThemAlone) {
   const BinSpread spread;
-  for (int bin = ExplorableBins::before_nodes; bin < spread.bins().count(); ++bin) {
+  for (int bin = LengthBins::before_nodes; bin < spread.bins().count(); ++bin) {
     const BinWeights s = spread(spread.bins().length(bin));
     for (int i = 0; i < 4; ++i)
       EXPECT_NEAR(s.weights[i], s.bin + i == bin ? 1 : 0, 1e-4) << bin << ' ' << i;
   }
 }
 
-TEST(ExplorableBins, EveryAbsorberStaysWithinAThousandthBetweenTheNodes) {
+TEST(LengthBins, EveryAbsorberStaysWithinAThousandthBetweenTheNodes) {
   const BinSpread spread;
   double mean = 0;
   int count = 0;
@@ -85,9 +87,9 @@ TEST(ExplorableBins, EveryAbsorberStaysWithinAThousandthBetweenTheNodes) {
   std::printf("mean error over lengths and absorbers %.2g\n", mean / count);
 }
 
-TEST(ExplorableBins, LengthsBelowTheFirstNodeStayWithinAThousandthUpToTheDensestAbsorption) {
+TEST(LengthBins, LengthsBelowTheFirstNodeStayWithinAThousandthUpToTheDensestAbsorption) {
   for (const double densest : {1.0, 50.0, 130.0, 1e3, 3e5}) {
-    const BinSpread spread(explorable_bins(densest, 1e9));
+    const BinSpread spread(length_bins(densest, 1e9));
     for (const double share : {1e-3, 0.03, 0.3, 1.0})
       for (const Absorber& absorber : {Absorber{plain_rgb()}, Absorber{narrow_band()}})
         EXPECT_LT(
@@ -98,19 +100,19 @@ TEST(ExplorableBins, LengthsBelowTheFirstNodeStayWithinAThousandthUpToTheDensest
   }
 }
 
-TEST(ExplorableBins, AreThirtyTwoNodesUnlessTheBodyIsLargeOrDense) {
-  EXPECT_EQ(explorable_bins(74, 2.7), ExplorableBins{});
-  EXPECT_EQ(explorable_bins(74, 0), ExplorableBins{});
-  EXPECT_EQ(explorable_bins(0, 0), ExplorableBins{});
+TEST(LengthBins, AreThirtyTwoNodesUnlessTheBodyIsLargeOrDense) {
+  EXPECT_EQ(length_bins(74, 2.7), LengthBins{});
+  EXPECT_EQ(length_bins(74, 0), LengthBins{});
+  EXPECT_EQ(length_bins(0, 0), LengthBins{});
   // Without scattering no light turns back early, so nothing is shorter than the body.
-  EXPECT_EQ(explorable_bins(1e5, 0), ExplorableBins{});
-  const ExplorableBins dense = explorable_bins(1e4, 1e3);
+  EXPECT_EQ(length_bins(1e5, 0), LengthBins{});
+  const LengthBins dense = length_bins(1e4, 1e3);
   EXPECT_LE(dense.first, 4e-5);
   EXPECT_GE(dense.last, 3000);
-  EXPECT_NEAR(dense.step(), ExplorableBins{}.step(), 1e-12);
+  EXPECT_NEAR(dense.step(), LengthBins{}.step(), 1e-12);
   for (const double extreme : {1e-300, 1e300, std::numeric_limits<double>::infinity()})
     for (const double scattering : {0.0, 1e-300, 1e300, std::numeric_limits<double>::infinity()})
-      EXPECT_LE(explorable_bins(extreme, scattering).count(), 140);
+      EXPECT_LE(length_bins(extreme, scattering).count(), 140);
 }
 
 TEST(HalfFloats, ReadBackWhatTheyHold) {
