@@ -39,7 +39,7 @@ class MicroVertex {
   /// Share of the path's light that arrives at this collision.
   double weight() const { return weight_; }
   void set_weight(double weight) { weight_ = weight; }
-  /// Into the frame of the side that the walk began on.
+  /// A direction of this side, in the frame of the side that the walk began on.
   Vec3 to_first_side(Vec3 w) const { return crossed_ ? Vec3{w.x, w.y, -w.z} : w; }
 
   MicroSample sample(Sample2 u) const;

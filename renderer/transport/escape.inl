@@ -26,11 +26,11 @@ void Tracer<Body>::escape(const Path& path) {
   batch.y[i] = static_cast<float>(path.d.y);
   batch.z[i] = static_cast<float>(path.d.z);
   escapes.from[i] = {path.n, path.length, path.weight, path.pdf, path.start, path.pixel, path.tint};
-  if (batch.size == EnvironmentBatch::capacity) collect(escapes);
+  if (batch.size == EnvironmentBatch::capacity) meet_environment(escapes);
 }
 
 template <class Body>
-void Tracer<Body>::collect(Escapes& escapes) {
+void Tracer<Body>::meet_environment(Escapes& escapes) {
   EnvironmentBatch& batch = escapes.batch;
   if (batch.size == 0) return;
   batch.look_up(std::get<ImageEnvironment>(scene_.environment));
@@ -66,11 +66,11 @@ void Tracer<Body>::meet_backdrop(const Path& path) {
   reflected.weight *= value;
   reflected.pdf = Path::not_looked_for;
   reflected.vertex = {};
-  if (reflected.weight > 0) leave_print(reflected);
+  if (reflected.weight > 0) reflect_from_print(reflected);
 }
 
 template <class Body>
-void Tracer<Body>::leave_print(Path path) {
+void Tracer<Body>::reflect_from_print(Path path) {
   // Light that falls on the print straight from the environment is looked for; what comes by way of
   // the body is found by going there.
   collector_.note("print", path);

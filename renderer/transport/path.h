@@ -6,6 +6,14 @@
 
 namespace translucube {
 
+/// Below this weight a path survives with probability weight / threshold: low where following it is
+/// cheap, high where each turn is a long walk (chosen by relMSE x CPU on the peers' materials).
+inline constexpr double roulette_of_clear = 1.0 / 64;
+/// The threshold of a scattered path, relative to its weight at the first scattering.
+inline constexpr double roulette_of_scattered = 1.0 / 4;
+/// The threshold inside a clear body under a rough interface, relative to the weight that went in.
+inline constexpr double roulette_of_rough = 1.0 / 8;
+
 /// A light path on its way back from the camera: an achromatic weight and a length inside the body.
 struct Path : Particle {
   Vec3 n;  ///< outward normal, at the boundary

@@ -64,17 +64,11 @@
 
 namespace translucube {
 
-/// Below this weight a path survives with probability weight / threshold: low where following it is
-/// cheap, high where each turn is a long walk (chosen by relMSE x CPU on the peers' materials).
-inline constexpr double roulette_of_clear = 1.0 / 64;
-/// The threshold of a scattered path, relative to its weight at the first scattering.
-inline constexpr double roulette_of_scattered = 1.0 / 4;
-/// The threshold inside a clear body under a rough interface, relative to the weight that went in.
-inline constexpr double roulette_of_rough = 1.0 / 8;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
 /// light that is trapped gets there, for good (a camera inside a clear body) or, in a mesh, for
 /// nearly as long (a medium of millions of bounding radii to the mean free path).
 inline constexpr std::uint32_t clear_event_cap = 20'000, scattering_event_cap = 2'000'000;
+
 /// One alternative of each part of a scene's body, and what follows from the three.
 template <class ShapeType, class InterfaceType, class InteriorType>
 struct Body {
@@ -129,7 +123,7 @@ class Tracer {
       leave();
     }
     connector_.flush();
-    for (Escapes& escapes : escapes_) collect(escapes);
+    for (Escapes& escapes : escapes_) meet_environment(escapes);
     collector_.flush();
   }
 
@@ -155,24 +149,27 @@ class Tracer {
 
   void enter();
   void arrive_outside(Path path);
+  /// Follows the reflected and the refracted branch.
   void enter_smooth(Path path);
+  /// Starts a path inside, d its direction there.
   void go_in(Path& path);
 
   // ---- walk.inl
 
   void walk();
   void walk_together();
-  /// Takes over where walks of many have come to the boundary.
+  /// Takes over the walks that have come to the boundary together.
   void arrive(const SphereWalk::Arrivals& arrivals, std::span<const Path> paths);
-  /// To the boundary; false for a path that lost its way.
+  /// Finds where a path comes to the boundary; false if it lost its way.
   bool walk_alone(Path& path, Hit& hit);
   template <class Place>
   bool walk_to_boundary(const Place& place, const Medium& medium, Particle& particle, Rng& rng,
                         Hit& hit);
-  /// The light that crosses the body unscattered, all of it; what is scattered on the way goes to
-  /// walk() as one path.
+  /// Follows all the light that crosses the body unscattered, up to its end; what is scattered on
+  /// the way goes to walk() as one path.
   void follow_unscattered(Path path);
   void start_walks(const Path& scattered, double weight, PathSampler& sampler);
+  /// Gives a path at a collision its new direction, or leaves that to the walk.
   void collide(Path& path);
   void arrive_inside(Path& path, const Hit& hit);
 
@@ -183,30 +180,32 @@ class Tracer {
   void leave_smooth(Path& path);
   /// Whether all light is reflected here, and again at every other place until it is scattered.
   bool traps(const Path& path) const;
-  /// From total reflection to the next collision, over all reflections between.
+  /// Moves a path from total reflection to its next collision, over all reflections between.
   void roll(Path& path);
+  /// Starts a path outside: it escapes or, where the body may be hit again, goes back.
   void go_out(Path& from, Vec3 direction, double weight, double pdf);
+  /// Has a path enter once more.
   void go_back(Path& path);
 
   // ---- cross.inl
 
-  /// Has the path wait at the interface, for others to cross with it.
+  /// Has a path wait at the interface, for others to cross with it.
   void await_crossing(const Path& path, bool from_outside);
-  /// All that wait, from microfacet to microfacet: what escapes outwards is sent out, and one of
-  /// the rays that escape into the body stands for all of them.
+  /// Takes all that wait from microfacet to microfacet: what escapes outwards is sent out, and one
+  /// of the rays that escape into the body stands for all of them.
   void cross_rough(bool from_outside);
-  void go_on_inside(Path& path, bool from_outside);
-  /// What left at the collisions just made.
+  /// Sends out what left at the collisions just made.
   void send_out(std::uint32_t lights_each);
+  void go_on_inside(Path& path, bool from_outside);
 
   // ---- diffuse.inl
 
   /// The body right below the interface at path.p.
   const InterfacedLambertian& diffuse_base(const Path& path) const;
-  /// What the background below path.p sends back through the interface, all that came in.
+  /// Sends out what the background below path.p sends back through the interface, all that came in.
   void return_diffuse(Path& path);
-  /// What the body sends out at a point, of light that went in there or elsewhere: one sample for
-  /// plastic's diffuse half and the dipole together (dipole.h).
+  /// Sends out what the body does at a point, of light that went in there or elsewhere: one sample
+  /// for plastic's diffuse half and the dipole together (dipole.h).
   void return_dipole(Path& arriving);
   /// Looks for a light of the environment, weighted by the balance heuristic against the directions
   /// that the body samples itself.
@@ -223,13 +222,12 @@ class Tracer {
     EnvironmentBatch batch;
     std::array<Escape, EnvironmentBatch::capacity> from;
   };
-  /// To the environment, where many look together.
   void escape(const Path& path);
-  void collect(Escapes& escapes);
+  void meet_environment(Escapes& escapes);
   /// Collects the backdrop's light, or sends the path back.
   void meet_backdrop(const Path& path);
-  /// From a print, in all directions.
-  void leave_print(Path path);
+  /// Sends a path back from a print, in any direction.
+  void reflect_from_print(Path path);
 
   // ---- at any boundary
 
@@ -261,8 +259,8 @@ class Tracer {
   bool may_come_back_;  ///< whether what leaves may arrive again
   Connector connector_;
   std::conditional_t<Body::walks_together, SphereWalk, std::monostate> sphere_walk_;
-  /// What was never inside waits apart from the rest: sums of floats depend on their order, and a
-  /// black body traced alone must have the bits of a black lane.
+  /// Paths that were never inside wait apart from the rest: sums of floats depend on their order,
+  /// and a black body traced alone must have the bits of a black lane.
   std::array<Escapes, 2> escapes_;
   std::vector<Path>&entering_, &walking_, &leaving_;
   std::vector<Path>& crossing_;  ///< at the rough interface
