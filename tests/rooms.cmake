@@ -21,19 +21,18 @@ set(rooms
   "renderer: renderer/base renderer/film renderer/scene renderer/transport"
 
   "api/base:"
-  "api/config: api/base"
-  "api/request: api/base api/config renderer renderer/optics renderer/scene renderer/slab"
-  "api/answer: api/base api/request renderer renderer/base renderer/film renderer/optics picture"
+  "api/request: api/base renderer renderer/optics renderer/scene"
+  "api/answer: api/base api/request renderer renderer/base renderer/film renderer/optics renderer/slab picture"
   "api:"
 
-  "server/base: api/config"
+  "server/base: api/base picture"
   "server/store: server/base api/base api/request renderer renderer/film server/store/sqlite"
   "server/store/sqlite: server/base server/store api/answer"
   "server/pictures: server/base server/store api/base api/request api/answer renderer renderer/film picture picture/sheet"
   "server/worker: server/base server/store server/pictures api/base api/request api/answer renderer renderer/base renderer/film renderer/light picture"
   "server/service: server/base server/store server/pictures server/worker api/base api/request api/answer picture"
   "server/http: server/base api/base picture"
-  "server/calls: server/base server/service server/http api api/base api/config api/request api/answer picture"
+  "server/calls: server/base server/service server/http api api/base api/request api/answer picture"
   "server/cli: server/base server/store server/pictures server/worker server/service server/http server/calls api/base api/request api/answer renderer renderer/film renderer/light renderer/scene picture"
 )
 

@@ -12,6 +12,7 @@
 
 #include "picture/exr/exr.h"
 #include "picture/image_io_rules.h"
+#include "picture/version.h"
 
 namespace translucube {
 namespace {
@@ -108,7 +109,7 @@ void read_exr_file(const std::filesystem::path& file,
 Imf::Header exr_header(int width, int height, Imf::Compression compression) {
   Imf::Header header(width, height);
   header.compression() = compression;
-  header.insert("Software", Imf::StringAttribute("Translucube " TRANSLUCUBE_VERSION));
+  header.insert("Software", Imf::StringAttribute("Translucube " + std::string(project_version())));
   return header;
 }
 

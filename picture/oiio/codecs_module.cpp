@@ -7,6 +7,7 @@
 
 #include "picture/oiio/codecs.h"
 #include "picture/oiio/file.h"
+#include "picture/version.h"
 
 namespace translucube {
 namespace {
@@ -17,14 +18,16 @@ constexpr std::size_t max_description_bytes = 60000;
 /// Past it libjpeg calls exit() too (JPEG_MAX_DIMENSION).
 constexpr int max_jpeg_side = 65500;
 
-/// Of PNG, TIFF and JPEG only "ImageDescription" and "Software" survive in all three.
-constexpr std::string_view software = "Translucube " TRANSLUCUBE_VERSION ", pixels in ";
+// Of PNG, TIFF and JPEG only "ImageDescription" and "Software" survive in all three. The latter is
+// "Translucube <version>, pixels in <colour space>".
+constexpr std::string_view program = "Translucube ", pixels_in = ", pixels in ";
 
 ImageMetadata metadata_of(const OIIO::ImageSpec& spec) {
   const std::string_view writer = spec.get_string_attribute("Software");
-  if (!writer.starts_with(software)) return {};
+  const std::size_t end = writer.find(pixels_in);
+  if (!writer.starts_with(program) || end == writer.npos) return {};
   return {.request = std::string(spec.get_string_attribute("ImageDescription")),
-          .colorspace = std::string(writer.substr(software.size()))};
+          .colorspace = std::string(writer.substr(end + pixels_in.size()))};
 }
 
 /// Undoes the transfer curve that the file names. OpenImageIO names sRGB for PNG and JPEG that say
@@ -70,7 +73,8 @@ void set_metadata(OIIO::ImageSpec& spec, ImageFormat format, const ImageMetadata
   const bool room = format == ImageFormat::png || metadata.request.size() <= max_description_bytes;
   if (room && !metadata.request.empty())  // an empty one trips an assertion of its IPTC writer
     spec.attribute("ImageDescription", metadata.request);
-  spec.attribute("Software", std::string(software) + metadata.colorspace);
+  spec.attribute("Software", std::string(program) + std::string(project_version()) +
+                                 std::string(pixels_in) + metadata.colorspace);
   // OpenImageIO would write the time of day: the same picture has the same bytes.
   spec.attribute("DateTime", "");
 }

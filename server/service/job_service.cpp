@@ -1,5 +1,7 @@
 #include "server/service/job_service.h"
 
+#include "api/answer/material_report.h"
+#include "api/request/canonical.h"
 #include "api/request/parse.h"
 #include "server/pictures/developed_image.h"
 #include "server/service/job_service_parts.h"

@@ -19,6 +19,7 @@
 #include "picture/color.h"
 #include "server/base/ids.h"
 #include "server/base/recent.h"
+#include "server/base/server_config.h"
 #include "server/pictures/explorable_cache.h"
 #include "server/pictures/image_artifacts.h"
 #include "server/pictures/live_films.h"
@@ -65,11 +66,11 @@ struct ListQuery {
 };
 
 /// Accepts, reports, cancels and removes renders and sweeps, and owns the workers that trace them.
-/// Safe to share by threads. The catalog, colours, stores and metrics outlive it.
+/// Safe to share by threads. The catalog, config, colours, stores and metrics outlive it.
 class JobService {
  public:
-  JobService(const api::Catalog& catalog, const ColorConfig& colors, JobStore& store,
-             ArtifactStore& artifacts, Metrics& metrics, Engine engine = {});
+  JobService(const api::Catalog& catalog, const ServerConfig& config, const ColorConfig& colors,
+             JobStore& store, ArtifactStore& artifacts, Metrics& metrics, Engine engine = {});
   ~JobService();
 
   // Renders (job_service.cpp).
@@ -134,6 +135,7 @@ class JobService {
   void changed();
 
   const api::Catalog& catalog_;
+  const ServerConfig& config_;
   const ColorConfig& colors_;
   JobStore& store_;
   ArtifactStore& artifacts_;

@@ -46,21 +46,23 @@ std::optional<Problem> no_picture(api::JobState state) {
   return std::nullopt;
 }
 
-JobService::JobService(const api::Catalog& catalog, const ColorConfig& colors, JobStore& store,
-                       ArtifactStore& artifacts, Metrics& metrics, Engine engine)
+JobService::JobService(const api::Catalog& catalog, const ServerConfig& config,
+                       const ColorConfig& colors, JobStore& store, ArtifactStore& artifacts,
+                       Metrics& metrics, Engine engine)
     : catalog_(catalog),
+      config_(config),
       colors_(colors),
       store_(store),
       artifacts_(artifacts),
       metrics_(metrics),
       live_films_([this] { changed(); }),
-      explorables_(catalog.server.explorable_memory_bytes),
+      explorables_(config.explorable_memory_bytes),
       darkroom_{catalog, colors, store, artifacts, metrics, explorables_} {
   clean_artifacts();
   workers_ = std::make_unique<WorkerPool>(
       Workshop{catalog, store, artifacts, metrics, live_films_, explorables_, std::move(engine),
-               catalog.server.threads_per_worker},
-      catalog.server.workers, [this] {
+               config.threads_per_worker},
+      config.workers, [this] {
         keep_within_quota();
         changed();
       });
@@ -135,7 +137,7 @@ void JobService::clean_artifacts() {
 /// Removes results that were not asked for longest, until what is left is nine tenths of the quota:
 /// first what is derived, then the pictures. The same request makes them again.
 void JobService::keep_within_quota() {
-  const std::uint64_t quota = catalog_.server.artifact_bytes;
+  const std::uint64_t quota = config_.artifact_bytes;
   const std::unique_lock lock(quota_mutex_, std::try_to_lock);
   if (!lock) return;
   try {

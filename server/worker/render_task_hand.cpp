@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "api/request/scene_spec.h"
 #include "api/request/sweep.h"
 #include "server/worker/render_task.h"
 

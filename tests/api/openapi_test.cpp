@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include "api/answer/listings.h"
+#include "api/answer/material_report.h"
 #include "api/answer/render_status.h"
+#include "api/request/canonical.h"
 #include "api/request/sweep.h"
 #include "tests/api/fixture.h"
 
@@ -36,7 +38,6 @@ void visit_references(const json& value, const std::function<void(const std::str
 
 TEST(OpenApi, DescribesEveryCallOfTheService) {
   EXPECT_EQ(document()["openapi"], "3.1.0");
-  EXPECT_EQ(document()["info"]["version"], TRANSLUCUBE_VERSION);
   std::set<std::string> calls;
   for (const auto& [path, item] : document()["paths"].items())
     for (const auto& [method, operation] : item.items())

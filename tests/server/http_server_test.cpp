@@ -43,14 +43,14 @@ struct Served {
   }
   HttpHandlers handlers() {
     HttpHandlers all;
-    all.respond = [this](const HttpRequest& request) { return respond(endpoints, request); };
+    all.respond = [this](const HttpRequest& request) { return respond(context, request); };
     return all;
   }
 
   TempFolder folder;
   FakeRenderer renderer;
   TestService service;
-  Endpoints endpoints{service.service, service.catalog, service.colors};
+  CallContext context{service.service, service.catalog, service.colors, service.config};
   HttpServer server;
   std::jthread thread;
   httplib::Client client{"127.0.0.1", server.port()};
@@ -66,7 +66,7 @@ std::string type_of(const httplib::Result& result) {
   return type.substr(type.rfind(':') + 1);
 }
 
-TEST(RoutesTest, ARenderGoesInAndItsPictureComesOut) {
+TEST(HttpServerTest, ARenderGoesInAndItsPictureComesOut) {
   Served served;
   const auto posted = served.client.Post("/v1/renders", {{"Prefer", "wait=20"}}, small_request(8),
                                          "application/json");
@@ -92,7 +92,7 @@ TEST(RoutesTest, ARenderGoesInAndItsPictureComesOut) {
   EXPECT_EQ(type_of(served.client.Get(location)), "not-found");
 }
 
-TEST(RoutesTest, ARangeThatIsNoneIsIgnored) {
+TEST(HttpServerTest, ARangeThatIsNoneIsIgnored) {
   Served served;
   const auto posted = served.client.Post("/v1/renders", {{"Prefer", "wait=20"}}, small_request(4),
                                          "application/json");
@@ -108,7 +108,7 @@ TEST(RoutesTest, ARangeThatIsNoneIsIgnored) {
   EXPECT_EQ(served.client.Get(image, {{"Range", many}})->status, 200);
 }
 
-TEST(RoutesTest, HeadHasTheHeadersOfGetAndNoBody) {
+TEST(HttpServerTest, HeadHasTheHeadersOfGetAndNoBody) {
   Served served;
   const auto posted = served.client.Post("/v1/renders", {{"Prefer", "wait=20"}}, small_request(4),
                                          "application/json");
@@ -121,7 +121,7 @@ TEST(RoutesTest, HeadHasTheHeadersOfGetAndNoBody) {
   EXPECT_EQ(served.client.Head("/nowhere")->status, 404);
 }
 
-TEST(RoutesTest, AnUnchangedPictureIsNotSentAgain) {
+TEST(HttpServerTest, AnUnchangedPictureIsNotSentAgain) {
   Served served;
   const auto posted = served.client.Post("/v1/renders", {{"Prefer", "wait=20"}}, small_request(4),
                                          "application/json");
@@ -133,7 +133,7 @@ TEST(RoutesTest, AnUnchangedPictureIsNotSentAgain) {
   EXPECT_TRUE(same->body.empty());
 }
 
-TEST(RoutesTest, EveryAnswerHasARequestIdTheClientsWhereItGaveOne) {
+TEST(HttpServerTest, EveryAnswerHasARequestIdTheClientsWhereItGaveOne) {
   Served served;
   EXPECT_EQ(served.client.Get("/livez", {{"X-Request-Id", "abc-1.2_3"}})
                 ->get_header_value("X-Request-Id"),
@@ -145,7 +145,7 @@ TEST(RoutesTest, EveryAnswerHasARequestIdTheClientsWhereItGaveOne) {
   }
 }
 
-TEST(RoutesTest, WrongMethodsAndPathsAreProblems) {
+TEST(HttpServerTest, WrongMethodsAndPathsAreProblems) {
   Served served;
   const auto put = served.client.Put("/v1/renders", "{}", "application/json");
   EXPECT_EQ(type_of(put), "method-not-allowed");
@@ -158,7 +158,7 @@ TEST(RoutesTest, WrongMethodsAndPathsAreProblems) {
   EXPECT_EQ(type_of(served.client.Get("/livez?verbose=1")), "invalid-request");
 }
 
-TEST(RoutesTest, ABodyOf64MebibytesIsRefusedAndTheServiceGoesOn) {
+TEST(HttpServerTest, ABodyOf64MebibytesIsRefusedAndTheServiceGoesOn) {
   Served served;
   const std::string body(std::size_t(64) << 20, ' ');
   EXPECT_EQ(type_of(served.client.Post("/v1/renders", body, "application/json")),
@@ -179,7 +179,7 @@ TEST(RoutesTest, ABodyOf64MebibytesIsRefusedAndTheServiceGoesOn) {
   EXPECT_EQ(served.client.Get("/livez")->status, 200);
 }
 
-TEST(RoutesTest, ABodyThatIsNotJsonOrIsCodedIsRefusedUnread) {
+TEST(HttpServerTest, ABodyThatIsNotJsonOrIsCodedIsRefusedUnread) {
   Served served;
   EXPECT_EQ(type_of(served.client.Post("/v1/renders", small_request(4), "text/plain")),
             "unsupported-media-type");
@@ -192,7 +192,7 @@ TEST(RoutesTest, ABodyThatIsNotJsonOrIsCodedIsRefusedUnread) {
   EXPECT_EQ(type_of(served.client.Post("/v1/renders", form)), "unsupported-media-type");
 }
 
-TEST(RoutesTest, APostOrDeleteWithoutABodyIsNotWaitedFor) {
+TEST(HttpServerTest, APostOrDeleteWithoutABodyIsNotWaitedFor) {
   Served served;
   const auto start = std::chrono::steady_clock::now();
   for (const char* method : {"POST /v1/renders/01ARZ3NDEKTSV4RRFFQ69G5FAV/cancel",
@@ -204,7 +204,7 @@ TEST(RoutesTest, APostOrDeleteWithoutABodyIsNotWaitedFor) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
 }
 
-TEST(RoutesTest, WhatIsNotHttpIsAProblemAndTheConnectionEnds) {
+TEST(HttpServerTest, WhatIsNotHttpIsAProblemAndTheConnectionEnds) {
   Served served;
   const std::string post = "POST /v1/renders HTTP/1.1\r\nHost: x\r\n";
   const std::string malformed = "malformed-http";
@@ -233,7 +233,7 @@ TEST(RoutesTest, WhatIsNotHttpIsAProblemAndTheConnectionEnds) {
   EXPECT_EQ(served.client.Get("/livez")->status, 200);
 }
 
-TEST(RoutesTest, AClientThatAsksBeforeItSendsTooMuchIsSparedTheSending) {
+TEST(HttpServerTest, AClientThatAsksBeforeItSendsTooMuchIsSparedTheSending) {
   Served served;
   Wire wire(served.server.port());
   wire.send(
@@ -242,14 +242,14 @@ TEST(RoutesTest, AClientThatAsksBeforeItSendsTooMuchIsSparedTheSending) {
   EXPECT_THAT(wire.receive(), StartsWith("HTTP/1.1 413"));
 }
 
-TEST(RoutesTest, ALongPathDoesNoHarm) {
+TEST(HttpServerTest, ALongPathDoesNoHarm) {
   Served served;
   const std::string path = '/' + std::string(8000, 'a');
   EXPECT_EQ(type_of(served.client.Get(path)), "not-found");
   EXPECT_EQ(type_of(served.client.Post(path, "{}", "application/json")), "not-found");
 }
 
-TEST(RoutesTest, AFailureOfOursTellsNothingOfItself) {
+TEST(HttpServerTest, AFailureOfOursTellsNothingOfItself) {
   Served served(0);
   const auto posted = served.client.Post("/v1/renders", small_request(4), "application/json");
   const std::string location = posted->get_header_value("Location");
@@ -266,7 +266,7 @@ TEST(RoutesTest, AFailureOfOursTellsNothingOfItself) {
   EXPECT_EQ(served.client.Get(location)->status, 200);
 }
 
-TEST(RoutesTest, ASecondServiceOnThePortIsRefused) {
+TEST(HttpServerTest, ASecondServiceOnThePortIsRefused) {
   Served served;
   HttpOptions options;
   options.port = served.server.port();
@@ -275,9 +275,9 @@ TEST(RoutesTest, ASecondServiceOnThePortIsRefused) {
   EXPECT_THROW(HttpServer(served.handlers(), options), ListenError);
 }
 
-TEST(RoutesTest, ClientsThatWaitLeaveThreadsForProbes) {
+TEST(HttpServerTest, ClientsThatWaitLeaveThreadsForProbes) {
   Served served(1, 8);
-  served.service.catalog.server.waiting_requests = 4;
+  const auto crowd = take_all_but(4, served.context.waiting);
   served.renderer.milliseconds_per_pass = 60'000;
   std::vector<std::jthread> waiting;
   for (int i = 0; i < 12; ++i)
@@ -289,7 +289,7 @@ TEST(RoutesTest, ClientsThatWaitLeaveThreadsForProbes) {
       ASSERT_TRUE(answer);
       EXPECT_EQ(answer->status, 202);
     });
-  ASSERT_TRUE(eventually([&] { return served.endpoints.waiting == 4; }));
+  ASSERT_TRUE(eventually([&] { return served.context.waiting.free() == 0; }));
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < 20; ++i) {
     httplib::Client client("127.0.0.1", served.server.port());
@@ -301,7 +301,7 @@ TEST(RoutesTest, ClientsThatWaitLeaveThreadsForProbes) {
   served.service.service.shut_down();
 }
 
-TEST(RoutesTest, AStopEndsWaitingClientsAndIdleConnectionsSoon) {
+TEST(HttpServerTest, AStopEndsWaitingClientsAndIdleConnectionsSoon) {
   auto served = std::make_unique<Served>();
   served->renderer.milliseconds_per_pass = 60'000;
   std::jthread waiting([port = served->server.port()] {
@@ -313,13 +313,15 @@ TEST(RoutesTest, AStopEndsWaitingClientsAndIdleConnectionsSoon) {
   });
   served->client.set_keep_alive(true);
   served->client.Get("/livez");
-  ASSERT_TRUE(eventually([&] { return served->endpoints.waiting == 1; }));
+  ASSERT_TRUE(eventually([&] {
+    return served->context.waiting.free() == served->service.config.waiting_requests - 1;
+  }));
   const auto start = std::chrono::steady_clock::now();
   served.reset();
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
 }
 
-TEST(RoutesTest, MalformedBodiesGetProblemsAndTheNextGoodRenderSucceeds) {
+TEST(HttpServerTest, MalformedBodiesGetProblemsAndTheNextGoodRenderSucceeds) {
   Served served;
   const auto corpus = translucube::test::malformed_bodies();
   ASSERT_GE(corpus.size(), 200u);

@@ -42,7 +42,7 @@ void read_absorber(const nlohmann::json& value, const std::string& pointer, cons
                    AbsorberRequest& out, Faults& faults);
 
 /// {"wavelengths_nm": [...], "values": [...]}; both keys are required.
-std::optional<SpectralAbsorber> read_spectrum(ObjectReader& object);
+std::optional<SpectralAbsorber> read_spectrum(FieldReader& object);
 
 /// A file named by a request: its absolute path with symbolic links resolved, if it may be read and
 /// is a regular file. Outside the catalog's folders the fault is the same whether it exists or not.

@@ -1,18 +1,17 @@
-#include "api/config/server_config.h"
+#include "server/base/server_config.h"
 
-#include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 
-#include "api/base/field_reader.h"
+#include "api/base/config_file.h"
+#include "api/base/text.h"
 
-namespace translucube::api {
+namespace translucube::server {
 namespace {
 
 using nlohmann::json;
 
 /// Names of hosts and origins, which compare without case (RFC 6454, 4; RFC 9110, 4.2.3).
-std::vector<std::string> read_names(ObjectReader& object, const char* key, const char* form,
+std::vector<std::string> read_names(api::FieldReader& object, const char* key, const char* form,
                                     bool (*right)(const std::string&)) {
   std::vector<std::string> names;
   const json* value = object.find(key);
@@ -22,9 +21,7 @@ std::vector<std::string> read_names(ObjectReader& object, const char* key, const
     return names;
   }
   for (const json& item : *value) {
-    std::string name = item.is_string() ? item.get<std::string>() : std::string();
-    std::ranges::transform(name, name.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::string name = item.is_string() ? api::lower_case(item.get<std::string>()) : std::string();
     if (right(name))
       names.push_back(std::move(name));
     else
@@ -46,22 +43,23 @@ bool is_origin(const std::string& name) {
 
 }  // namespace
 
-ServerConfig read_server(const json& value, const std::string& pointer, ServerConfig server,
-                         const std::filesystem::path& folder, Faults& faults) {
-  ObjectReader object(value, pointer, faults);
+ServerConfig read_server_config(api::ConfigFile& file) {
+  ServerConfig server;
+  server.data_folder = file.resolved("../data");
+  const json* section = file.fields().find("server");
+  if (section == nullptr) return server;
+  api::FieldReader object(*section, "/server", file.faults());
   const auto integer = [&](const char* key, std::uint64_t low, std::uint64_t high, int& out) {
     if (const auto number = object.integer(key, low, high)) out = static_cast<int>(*number);
   };
   if (auto host = object.string("host")) server.host = std::move(*host);
   integer("port", 0, 65535, server.port);
-  if (const auto data = object.string("data_folder"))
-    server.data_folder = (folder / *data).lexically_normal();
+  if (const auto data = object.string("data_folder")) server.data_folder = file.resolved(*data);
   integer("workers", 1, 1024, server.workers);
   integer("threads_per_worker", 0, 1024, server.threads_per_worker);
 
   if (const json* tokens = object.find("tokens_file"); tokens && !tokens->is_null())
-    if (const auto file = object.string("tokens_file"))
-      server.tokens_file = (folder / *file).lexically_normal();
+    if (const auto path = object.string("tokens_file")) server.tokens_file = file.resolved(*path);
   server.hosts = read_names(object, "hosts", "host or host:port", is_host);
   server.origins = read_names(object, "origins", "http[s]://host[:port]", is_origin);
 
@@ -94,4 +92,4 @@ ServerConfig read_server(const json& value, const std::string& pointer, ServerCo
   return server;
 }
 
-}  // namespace translucube::api
+}  // namespace translucube::server

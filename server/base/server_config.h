@@ -4,16 +4,17 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "api/base/faults.h"
+#include "server/base/log.h"
 
 namespace translucube::api {
+class ConfigFile;
+}
 
-enum class LogFormat { logfmt, json };
+namespace translucube::server {
 
 struct ServerConfig {
   std::string host = "127.0.0.1";
@@ -45,9 +46,8 @@ struct ServerConfig {
   LogFormat log_format = LogFormat::logfmt;
 };
 
-/// Reads the section over `defaults`; paths are relative to `folder`. Each fault goes to `faults`.
-ServerConfig read_server(const nlohmann::json& value, const std::string& pointer,
-                         ServerConfig defaults, const std::filesystem::path& folder,
-                         Faults& faults);
+/// Reads the section, over the defaults above. Its faults are the file's: whoever reads the last
+/// section refuses them.
+ServerConfig read_server_config(api::ConfigFile& file);
 
-}  // namespace translucube::api
+}  // namespace translucube::server

@@ -21,7 +21,7 @@ struct FrontUnderTest {
   HttpResponse call(const std::string& method, const std::string& path,
                     const std::string& body = {}, std::map<std::string, std::string> headers = {},
                     std::vector<std::pair<std::string, std::string>> query = {}) {
-    return respond(endpoints, {method, path, std::move(query), std::move(headers), body});
+    return respond(context, {method, path, std::move(query), std::move(headers), body});
   }
   HttpResponse post(int samples, std::map<std::string, std::string> headers = {}) {
     headers.emplace("content-type", "application/json");
@@ -32,7 +32,7 @@ struct FrontUnderTest {
   TempFolder folder;
   FakeRenderer renderer;
   TestService service;
-  Endpoints endpoints{service.service, service.catalog, service.colors};
+  CallContext context{service.service, service.catalog, service.colors, service.config};
 };
 
 std::string header(const HttpResponse& response, const std::string& name) {
@@ -53,7 +53,7 @@ std::string problem_of(const HttpResponse& response) {
   return type.substr(type.rfind(':') + 1);
 }
 
-TEST(EndpointsTest, APostIsAcceptedWithItsLocation) {
+TEST(CallsTest, APostIsAcceptedWithItsLocation) {
   FrontUnderTest tested(0);
   const HttpResponse response = tested.post(4);
   EXPECT_EQ(response.status, 202);
@@ -63,7 +63,7 @@ TEST(EndpointsTest, APostIsAcceptedWithItsLocation) {
   EXPECT_EQ(tested.call("GET", location).status, 200);
 }
 
-TEST(EndpointsTest, APostThatWaitsAnswersWithTheEnd) {
+TEST(CallsTest, APostThatWaitsAnswersWithTheEnd) {
   FrontUnderTest tested;
   const HttpResponse response = tested.post(4, {{"prefer", "wait=20"}});
   EXPECT_EQ(response.status, 200);
@@ -71,24 +71,23 @@ TEST(EndpointsTest, APostThatWaitsAnswersWithTheEnd) {
   EXPECT_EQ(body_of(response)["state"], "succeeded");
 }
 
-TEST(EndpointsTest, APostThatWaitedInVainIsAccepted) {
+TEST(CallsTest, APostThatWaitedInVainIsAccepted) {
   FrontUnderTest tested(0);
   EXPECT_EQ(tested.post(4, {{"prefer", "wait=0"}}).status, 202);
 }
 
-TEST(EndpointsTest, WaitingIsNotHonouredWhereTooManyWait) {
+TEST(CallsTest, WaitingIsNotHonouredWhereTooManyWait) {
   FrontUnderTest tested(0);
-  const int most = tested.service.catalog.server.waiting_requests;
-  tested.endpoints.waiting = most;
+  const auto crowd = take_all_but(0, tested.context.waiting);
   const auto start = std::chrono::steady_clock::now();
   const HttpResponse response = tested.post(4, {{"prefer", "wait=20"}});
   EXPECT_EQ(response.status, 202);
   EXPECT_EQ(header(response, "Preference-Applied"), "");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
-  EXPECT_EQ(tested.endpoints.waiting, most);
+  EXPECT_EQ(tested.context.waiting.free(), 0);
 }
 
-TEST(EndpointsTest, AnIdempotentPostIsAnsweredWithTheSameRender) {
+TEST(CallsTest, AnIdempotentPostIsAnsweredWithTheSameRender) {
   FrontUnderTest tested(0);
   const HttpResponse first = tested.post(4, {{"idempotency-key", "k"}});
   const HttpResponse again = tested.post(4, {{"idempotency-key", "k"}});
@@ -104,7 +103,7 @@ TEST(EndpointsTest, AnIdempotentPostIsAnsweredWithTheSameRender) {
     EXPECT_EQ(tested.post(4, {{"idempotency-key", key}}).status, 422) << key;
 }
 
-TEST(EndpointsTest, OnlyJsonIsPosted) {
+TEST(CallsTest, OnlyJsonIsPosted) {
   FrontUnderTest tested(0);
   for (const char* type :
        {"text/plain", "application/x-www-form-urlencoded", "multipart/form-data"})
@@ -114,7 +113,7 @@ TEST(EndpointsTest, OnlyJsonIsPosted) {
   EXPECT_EQ(tested.call("POST", "/v1/renders", small_request(4)).status, 202);
 }
 
-TEST(EndpointsTest, FaultsOfARequestAreAllNamed) {
+TEST(CallsTest, FaultsOfARequestAreAllNamed) {
   FrontUnderTest tested(0);
   const HttpResponse response = tested.call(
       "POST", "/v1/renders",
@@ -124,7 +123,7 @@ TEST(EndpointsTest, FaultsOfARequestAreAllNamed) {
   EXPECT_EQ(body_of(response)["errors"].size(), 2u);
 }
 
-TEST(EndpointsTest, AStatusIsSentAgainOnlyWhenItChanged) {
+TEST(CallsTest, AStatusIsSentAgainOnlyWhenItChanged) {
   FrontUnderTest tested(0);
   const std::string location = header(tested.post(4), "Location");
   const std::string etag = header(tested.call("GET", location), "ETag");
@@ -137,7 +136,7 @@ TEST(EndpointsTest, AStatusIsSentAgainOnlyWhenItChanged) {
   EXPECT_EQ(tested.call("GET", location, {}, {{"if-none-match", etag}}).status, 200);
 }
 
-TEST(EndpointsTest, ListsArePagedAndFilteredAndRefuseOtherQueries) {
+TEST(CallsTest, ListsArePagedAndFilteredAndRefuseOtherQueries) {
   FrontUnderTest tested(0);
   for (int i = 0; i < 3; ++i) tested.post(4);
   const HttpResponse page = tested.call("GET", "/v1/renders", {}, {}, {{"limit", "2"}});
@@ -158,7 +157,7 @@ TEST(EndpointsTest, ListsArePagedAndFilteredAndRefuseOtherQueries) {
             422);
 }
 
-TEST(EndpointsTest, AnImageIsNegotiatedTaggedAndServedInParts) {
+TEST(CallsTest, AnImageIsNegotiatedTaggedAndServedInParts) {
   FrontUnderTest tested;
   const std::string path = "/v1/renders/" + tested.finished() + "/image";
   const HttpResponse png = tested.call("GET", path);
@@ -186,7 +185,7 @@ TEST(EndpointsTest, AnImageIsNegotiatedTaggedAndServedInParts) {
   EXPECT_EQ(tested.call("GET", path, {}, {{"range", "bytes=0-1"}, {"if-range", etag}}).status, 206);
 }
 
-TEST(EndpointsTest, AnImageThatIsNotToBeHadIsAProblem) {
+TEST(CallsTest, AnImageThatIsNotToBeHadIsAProblem) {
   FrontUnderTest tested(0);
   const std::string location = header(tested.post(4), "Location");
   EXPECT_EQ(problem_of(tested.call("GET", location + "/image")), "not-ready");
@@ -200,7 +199,7 @@ TEST(EndpointsTest, AnImageThatIsNotToBeHadIsAProblem) {
   EXPECT_EQ(problem_of(tested.call("GET", location + "/image")), "conflict");
 }
 
-TEST(EndpointsTest, CancelSaysTheStateAndRemoveLeavesNothing) {
+TEST(CallsTest, CancelSaysTheStateAndRemoveLeavesNothing) {
   FrontUnderTest tested(0);
   const std::string location = header(tested.post(4), "Location");
   for (int i = 0; i < 2; ++i) {
@@ -217,7 +216,7 @@ TEST(EndpointsTest, CancelSaysTheStateAndRemoveLeavesNothing) {
     EXPECT_EQ(problem_of(tested.call(method, path)), "not-found") << method << ' ' << path;
 }
 
-TEST(EndpointsTest, WhatMayBeNamedIsListed) {
+TEST(CallsTest, WhatMayBeNamedIsListed) {
   FrontUnderTest tested(0);
   EXPECT_GE(body_of(tested.call("GET", "/v1/absorbers"))["absorbers"].size(), 5u);
   EXPECT_THAT(body_of(tested.call("GET", "/v1/environments")).dump(), HasSubstr("forest"));
@@ -225,7 +224,7 @@ TEST(EndpointsTest, WhatMayBeNamedIsListed) {
   EXPECT_THAT(body_of(tested.call("GET", "/v1/displays")).dump(), HasSubstr("sRGB"));
 }
 
-TEST(EndpointsTest, ProbesSayAliveAndReady) {
+TEST(CallsTest, ProbesSayAliveAndReady) {
   FrontUnderTest tested(0);
   EXPECT_EQ(tested.call("GET", "/livez").status, 200);
   EXPECT_EQ(tested.call("GET", "/readyz").status, 200);
@@ -237,7 +236,7 @@ TEST(EndpointsTest, ProbesSayAliveAndReady) {
   EXPECT_EQ(tested.post(4).status, 503);
 }
 
-TEST(EndpointsTest, NotReadyWhereTheDiskRefuses) {
+TEST(CallsTest, NotReadyWhereTheDiskRefuses) {
   FrontUnderTest tested(0);
   // The probe cannot be renamed over a folder.
   std::filesystem::create_directories(tested.folder / "artifacts" / "probe" / "x");
@@ -248,7 +247,7 @@ TEST(EndpointsTest, NotReadyWhereTheDiskRefuses) {
       << "no path of ours is told";
 }
 
-TEST(EndpointsTest, UnknownPathsAndWrongMethodsAreTold) {
+TEST(CallsTest, UnknownPathsAndWrongMethodsAreTold) {
   FrontUnderTest tested(0);
   for (const char* path :
        {"", "/web/", "/web/../service.json", "/v1", "/v1/renders/", "/v1/renders/..%2f",
