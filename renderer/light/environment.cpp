@@ -174,11 +174,6 @@ void ImageEnvironment::build_irradiance() {
   }
 }
 
-Rgb ImageEnvironment::irradiance(Vec3 n) const {
-  const std::array<Rgb, 3> orders = irradiance_by_order(n);
-  return orders[0] + orders[1] + orders[2];
-}
-
 std::array<Rgb, 3> ImageEnvironment::irradiance_by_order(Vec3 n) const {
   const std::array<double, 9> basis = quadratic_basis(n);
   std::array<Rgb, 3> orders;
