@@ -49,10 +49,6 @@ void develop_lane(const OpaqueLane&, const ContributionBatch& batch, DevelopedBa
                [](Real light, Real length, int) { return select(length > 0, 0, light); });
 }
 
-void develop_lane(const LengthLane&, const ContributionBatch& batch, DevelopedBatch& developed) {
-  for_channels(batch, developed, [](Real light, Real length, int) { return light * length; });
-}
-
 void develop_lane(const RgbLane& lane, const ContributionBatch& batch, DevelopedBatch& developed) {
   for_channels(batch, developed, [&](Real light, Real length, int channel) {
     const Real depth = Real(lane.sigma_a[channel]) * length;

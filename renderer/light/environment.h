@@ -70,10 +70,10 @@ class ImageEnvironment {
   /// on its way meanwhile. Directions in single precision.
   std::vector<EnvironmentSample> sample(std::span<const Sample2> u) const;
   Vec3 direction(MapCoordinates at) const;
-  /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order
-  /// (Ramamoorthi and Hanrahan 2001), order by order: their sum is right within a few percent, and
-  /// possibly negative under a hard sun. For a normal at an angle from n, averaged about n, the
-  /// irradiance is the sum with the Legendre polynomials of the angle's cosine as weights.
+  /// Irradiance of a surface with normal n, by the spherical harmonics of the orders 0 to 2
+  /// (Ramamoorthi and Hanrahan 2001), whose sum is within a few percent, and possibly negative
+  /// under a hard sun. Averaged over the normals at an angle from n, the irradiance is their sum
+  /// with the Legendre polynomials of the angle's cosine as weights.
   std::array<Rgb, 3> irradiance_by_order(Vec3 n) const;
 
  private:

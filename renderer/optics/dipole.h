@@ -42,7 +42,6 @@ class DipoleProfile {
   /// sigma_a finite; reduced_sigma_s > 0, +infinity for the limit in which R_d is local.
   DipoleProfile(double sigma_a, double reduced_sigma_s, double ior);
 
-  double reduced_albedo() const { return albedo_; }
   double z_real() const { return z_[0]; }
   /// R_d(r) [1 / unit^2] (eq. 4). Finite densities only.
   double reflectance(double r) const;

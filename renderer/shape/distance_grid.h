@@ -27,7 +27,7 @@ class DistanceGrid {
     if (samples_ == nullptr) throw std::bad_alloc();
   }
 
-  /// The bounds at p, which may be anywhere: beyond the cube the nearest cell answers.
+  /// Bounds at p, which may lie anywhere: beyond the cube the nearest cell answers.
   /// `nearest(center)` returns a distance that is found there, of which `keen` times is known to be
   /// free.
   template <class Nearest>
@@ -48,7 +48,7 @@ class DistanceGrid {
  private:
   static constexpr double rounding = 1e-6;  ///< of the samples, in single precision
 
-  /// The index of the cell of x; a NaN has the first one.
+  /// The cell of a coordinate; a NaN has the first one.
   int index(double x) const {
     return static_cast<int>(std::fmin(std::fmax(0.0, 0.5 * (x + 1) * cells_), cells_ - 0.5));
   }

@@ -153,7 +153,7 @@ DistanceBounds nearest_face(const MeshGeometry& geometry, Vec3 p, double most, d
 
 }  // namespace
 
-bool Mesh::enter(Vec3 p, Vec3 d, Hit& hit) const {
+bool Mesh::intersect_outside(Vec3 p, Vec3 d, Hit& hit) const {
   // From afar: move to the bounding sphere first, where single precision is good enough.
   const double b = dot(p, d), c = length_squared(p) - 1.02 * 1.02;
   double advanced = 0;
@@ -169,7 +169,7 @@ bool Mesh::enter(Vec3 p, Vec3 d, Hit& hit) const {
   return true;
 }
 
-bool Mesh::exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
+bool Mesh::intersect_inside(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
   return first_hit(*geometry_, p, d, t_max, Side::back, hit);
 }
 

@@ -118,7 +118,7 @@ std::variant<TracedPass, OutOfTime, Stopped> TaskRunner::trace_or_read(const Tas
     const TraceCounters& counters = pass->film.counters;
     workshop_.metrics.count_pass(
         {pass->seconds, counters.camera_samples,
-         counters.flights + counters.boundary_events + counters.connections, counters.nan_samples});
+         counters.flights + counters.boundary_events + counters.light_samples, counters.nan_samples});
   }
   return outcome;
 }

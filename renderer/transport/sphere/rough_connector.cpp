@@ -14,7 +14,7 @@ RoughConnector::RoughConnector(const Scene& scene, Collector& collector, const L
 }
 
 void RoughConnector::connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths) {
-  collector_.counters().connections += vertices.size;
+  collector_.counters().light_samples += vertices.size;
   for (std::size_t v = 0; v < vertices.size; ++v) {
     const Path& path = paths[vertices.slot[v]];
     const Vec3 p = vertices.p[v], d = vertices.d[v];

@@ -7,8 +7,7 @@ namespace translucube {
 
 SmoothConnector::SmoothConnector(const Scene& scene, Collector& collector, std::uint64_t key)
     : collector_(collector),
-      environment_(scene.next_event_estimation ? std::get_if<ImageEnvironment>(&scene.environment)
-                                               : nullptr),
+      environment_(std::get_if<ImageEnvironment>(&scene.environment)),
       medium_(std::get<ScatteringInterior>(scene.interior).medium),
       ior_(std::get<SmoothInterface>(scene.interface).ior),
       rng_(key) {
@@ -39,7 +38,7 @@ void SmoothConnector::start(Path& path) {
   if (!active()) return;
   const double rho = length(path.p);
   const Vec3 axis = rho > 0 ? path.p * (1 / rho) : Vec3{0, 0, 1};
-  path.walk = static_cast<std::uint32_t>(walks_.size());
+  path.start = static_cast<std::uint32_t>(walks_.size());
   walks_.push_back({axis, environment_->irradiance_by_order(axis)});
   for (Rgb& order : walks_.back().expected) order = order * std::numbers::inv_pi_v<float>;
 }
@@ -49,7 +48,7 @@ bool SmoothConnector::reaches_far(const SmoothExits& exits) const {
 }
 
 void SmoothConnector::connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths) {
-  collector_.counters().connections += vertices.size;
+  collector_.counters().light_samples += vertices.size;
   // The shortest of all ways out on the far branch begins at the radius 1 / ior.
   const bool far = medium_.sigma_s * std::sqrt(1 - 1 / (ior_ * ior_)) < longest_way;
   for (std::size_t i = 0; i < vertices.size; ++i) {
@@ -62,7 +61,7 @@ void SmoothConnector::connect(const SphereWalk::Vertices& vertices, std::span<co
                     path.weight);
     SmoothExitBatch& near = near_.batch;
     if (near_alone()) {
-      near.axis.set(near.size, walks_[path.walk].axis);
+      near.axis.set(near.size, walks_[path.start].axis);
       near.choice[near.size] = vertices.u[i];
       near.drawn[near.size] = vertices.v[i];
       near.turn[near.size] = vertices.w[i];
@@ -81,16 +80,16 @@ void SmoothConnector::push(Queue& queue, const SphereWalk::Vertices& vertices, s
                            const Path& path, float weight, std::uint32_t light, Vec3 direction,
                            double pdf) {
   queue.waiting[queue.batch.size] = {path.length + vertices.length[i], weight, path.pixel,
-                                     path.walk, light};
+                                     path.start, light};
   queue.batch.push(vertices.p[i], vertices.depth2[i], vertices.d[i], direction, pdf);
 }
 
 double SmoothConnector::pdf(const Path& path) const {
   const Path::Vertex& from = path.vertex;
-  if (from.phase == 0) return 0;
+  if (!from.connected()) return Path::not_looked_for;
   const SmoothExits exits(ior_, from.p, from.depth2);
   const bool far = exits.is_far(path.d);
-  if (far && !reaches_far(exits)) return 0;
+  if (far && !reaches_far(exits)) return Path::not_looked_for;
   if (!far && near_alone()) return Path::found_by_connecting;
   return from.phase * std::exp(-medium_.sigma_s * from.flight) * exits.jacobian(path.d) /
          walk_medium().chance(from.depth2);

@@ -31,7 +31,7 @@ struct NoConnector {
   NoConnector(const Scene&, Collector&, std::uint64_t) {}
   static constexpr bool active() { return false; }
   void start(Path&) {}
-  double pdf(const Path&) const { return 0; }
+  double pdf(const Path&) const { return Path::not_looked_for; }
   void flush() {}
 };
 
