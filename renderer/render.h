@@ -13,8 +13,10 @@
 #include <string_view>
 #include <variant>
 
+#include "renderer/film/absorption.h"
 #include "renderer/film/explorable.h"
 #include "renderer/film/film.h"
+#include "renderer/film/length_bins.h"
 #include "renderer/scene/spec.h"
 
 namespace translucube {

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "api/request/backdrop.h"
-#include "api/request/objects.h"
+#include "api/request/backdrop_parameters.h"
+#include "api/request/object_parameters.h"
 
 namespace translucube::api {
 

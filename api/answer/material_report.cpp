@@ -1,8 +1,10 @@
+#include "api/answer/material_report.h"
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "api/answer/status_json.h"
-#include "api/request/parse.h"
+#include "api/request/scene_spec.h"
 #include "renderer/base/spectrum.h"
 #include "renderer/film/absorption.h"
 #include "renderer/optics/material_cube.h"

@@ -1,20 +1,15 @@
 #include "api/base/field_reader.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "api/base/text.h"
+
 namespace translucube::api {
 
 using nlohmann::json;
-
-std::string number_text(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return {text, end};
-}
 
 bool Range::contains(double value) const {
   return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
@@ -31,12 +26,12 @@ std::string Range::text() const {
   return "";
 }
 
-ObjectReader::ObjectReader(const json& value, std::string pointer, Faults& faults)
+FieldReader::FieldReader(const json& value, std::string pointer, Faults& faults)
     : object_(value.is_object() ? &value : nullptr), pointer_(std::move(pointer)), faults_(faults) {
   if (!object_) faults_.add(pointer_, "must be an object");
 }
 
-const json* ObjectReader::find(std::string_view key, Presence presence) {
+const json* FieldReader::find(std::string_view key, Presence presence) {
   known_.push_back(key);
   if (!object_) return nullptr;
   const auto found = object_->find(key);
@@ -45,8 +40,8 @@ const json* ObjectReader::find(std::string_view key, Presence presence) {
   return nullptr;
 }
 
-std::optional<double> ObjectReader::number(const json& value, const std::string& pointer,
-                                           const Range& range) {
+std::optional<double> FieldReader::number(const json& value, const std::string& pointer,
+                                          const Range& range) {
   if (value.is_number()) {
     const double number = value.get<double>();
     if (std::isnan(number)) return std::nullopt;  // the reader has told its fault
@@ -57,14 +52,14 @@ std::optional<double> ObjectReader::number(const json& value, const std::string&
   return std::nullopt;
 }
 
-std::optional<double> ObjectReader::number(std::string_view key, const Range& range,
-                                           Presence presence) {
+std::optional<double> FieldReader::number(std::string_view key, const Range& range,
+                                          Presence presence) {
   const json* value = find(key, presence);
   return value ? number(*value, pointer_to(key), range) : std::nullopt;
 }
 
-std::optional<std::uint64_t> ObjectReader::integer(std::string_view key, std::uint64_t low,
-                                                   std::uint64_t high, Presence presence) {
+std::optional<std::uint64_t> FieldReader::integer(std::string_view key, std::uint64_t low,
+                                                  std::uint64_t high, Presence presence) {
   const json* value = find(key, presence);
   if (!value) return std::nullopt;
   if (value->is_number_float() && std::isnan(value->get<double>())) return std::nullopt;
@@ -78,7 +73,7 @@ std::optional<std::uint64_t> ObjectReader::integer(std::string_view key, std::ui
   return std::nullopt;
 }
 
-std::optional<bool> ObjectReader::boolean(std::string_view key) {
+std::optional<bool> FieldReader::boolean(std::string_view key) {
   const json* value = find(key);
   if (!value) return std::nullopt;
   if (value->is_boolean()) return value->get<bool>();
@@ -86,7 +81,7 @@ std::optional<bool> ObjectReader::boolean(std::string_view key) {
   return std::nullopt;
 }
 
-std::optional<std::string> ObjectReader::string(std::string_view key, Presence presence) {
+std::optional<std::string> FieldReader::string(std::string_view key, Presence presence) {
   const json* value = find(key, presence);
   if (!value) return std::nullopt;
   if (value->is_string()) return value->get<std::string>();
@@ -94,8 +89,8 @@ std::optional<std::string> ObjectReader::string(std::string_view key, Presence p
   return std::nullopt;
 }
 
-std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, const Range& range,
-                                                         std::size_t most) {
+std::optional<std::vector<double>> FieldReader::numbers(std::string_view key, const Range& range,
+                                                        std::size_t most) {
   const json* value = find(key, Presence::required);
   if (!value) return std::nullopt;
   if (!value->is_array() || value->size() > most) {
@@ -110,8 +105,8 @@ std::optional<std::vector<double>> ObjectReader::numbers(std::string_view key, c
   return list;
 }
 
-std::optional<std::array<double, 3>> ObjectReader::triple(std::string_view key, const Range& range,
-                                                          Presence presence) {
+std::optional<std::array<double, 3>> FieldReader::triple(std::string_view key, const Range& range,
+                                                         Presence presence) {
   const json* value = find(key, presence);
   if (!value) return std::nullopt;
   if (!value->is_array() || value->size() != 3) {
@@ -128,7 +123,7 @@ std::optional<std::array<double, 3>> ObjectReader::triple(std::string_view key, 
   return complete ? std::optional(three) : std::nullopt;
 }
 
-int ObjectReader::exclusive(std::initializer_list<std::string_view> keys, Presence presence) {
+int FieldReader::exclusive(std::initializer_list<std::string_view> keys, Presence presence) {
   int present = 0;
   std::vector<std::string> names;
   for (const std::string_view key : keys) {
@@ -143,17 +138,17 @@ int ObjectReader::exclusive(std::initializer_list<std::string_view> keys, Presen
   return present;
 }
 
-bool ObjectReader::has(std::string_view key) const { return object_ && object_->contains(key); }
+bool FieldReader::has(std::string_view key) const { return object_ && object_->contains(key); }
 
-std::string ObjectReader::pointer_to(std::string_view key) const {
+std::string FieldReader::pointer_to(std::string_view key) const {
   return pointer_ + '/' + pointer_token(key);
 }
 
-void ObjectReader::fault(std::string_view key, std::string detail) {
+void FieldReader::fault(std::string_view key, std::string detail) {
   faults_.add(pointer_to(key), std::move(detail));
 }
 
-void ObjectReader::refuse_unknown_keys() {
+void FieldReader::refuse_unknown_keys() {
   if (!object_) return;
   std::string detail;
   for (const auto& item : object_->items()) {

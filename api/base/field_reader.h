@@ -17,9 +17,6 @@
 
 namespace translucube::api {
 
-/// The shortest text that reads back as the number.
-std::string number_text(double value);
-
 /// An interval of numbers, each end closed or open.
 struct Range {
   double low = -std::numeric_limits<double>::max();
@@ -33,10 +30,10 @@ inline constexpr Range unit_range{0, 1};
 
 enum class Presence { optional, required };
 
-class ObjectReader {
+class FieldReader {
  public:
   /// A value that is no object is a fault, and reads like an empty one that misses nothing.
-  ObjectReader(const nlohmann::json& value, std::string pointer, Faults& faults);
+  FieldReader(const nlohmann::json& value, std::string pointer, Faults& faults);
 
   /// Null where the key is missing (a fault if it is required). Keys that are asked for are known.
   const nlohmann::json* find(std::string_view key, Presence presence = Presence::optional);

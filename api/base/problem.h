@@ -1,5 +1,9 @@
 #pragma once
 
+// The room of what all documents share: they are read strictly (json_reader.h, field_reader.h),
+// what is wrong is told with its place (faults.h), and a refusal is a Problem. It knows nothing of
+// what a document is about.
+
 #include <string>
 #include <vector>
 
@@ -12,35 +16,36 @@ struct Fault {
   friend bool operator==(const Fault&, const Fault&) = default;
 };
 
-/// Every way in which the service refuses, in one table (problem.cpp): code -> stable type URI,
-/// HTTP status, title.
+/// Every way in which the service refuses. One table (problem.cpp) has for each a stable type URI,
+/// an HTTP status and a title; internal is the last.
 enum class ProblemCode {
-  malformed_http,          // 400: the message is not HTTP, or its body has no clear end
-  malformed_json,          // 400
-  invalid_request,         // 422
-  idempotency_mismatch,    // 422
-  unauthorized,            // 401: no token, or none that the service knows
-  forbidden,               // 403: a web page of another origin
-  not_found,               // 404
-  gone,                    // 410: removed to make room
-  method_not_allowed,      // 405
-  not_acceptable,          // 406
-  request_timeout,         // 408: the head of the request did not come in time
-  conflict,                // 409: the state does not allow it (image of a failed render, ...)
-  not_ready,               // 409: the image of a render that is still queued or running
-  payload_too_large,       // 413
-  uri_too_long,            // 414
-  unsupported_media_type,  // 415
-  range_not_satisfiable,   // 416
-  queue_full,              // 429
-  misdirected,             // 421: for a host that the service is not
-  headers_too_large,       // 431
-  overloaded,              // 503
-  storage_failure,         // 507: full disk, store not writable
-  internal,                // 500
+  malformed_http,  // the message is not HTTP, or its body has no clear end
+  malformed_json,
+  invalid_request,
+  idempotency_mismatch,
+  unauthorized,  // no token, or none that the service knows
+  forbidden,     // a web page of another origin
+  not_found,
+  gone,  // removed to make room
+  method_not_allowed,
+  not_acceptable,
+  request_timeout,  // the head of the request did not come in time
+  conflict,         // the state does not allow it (image of a failed render, ...)
+  not_ready,        // the image of a render that is still queued or running
+  payload_too_large,
+  uri_too_long,
+  unsupported_media_type,
+  range_not_satisfiable,
+  queue_full,
+  misdirected,  // for a host that the service is not
+  headers_too_large,
+  overloaded,
+  storage_failure,  // full disk, store not writable
+  internal,
 };
 
 struct ProblemKind {
+  ProblemCode code;
   const char* type;  ///< stable, e.g. "urn:translucube:problem:invalid-request"
   int status;
   const char* title;

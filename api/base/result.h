@@ -7,7 +7,6 @@
 //   use(*sweep);
 
 #include <concepts>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -18,10 +17,8 @@ namespace translucube::api {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  template <class U = T>
-  requires std::convertible_to<U, T> &&
-      (!std::same_as<std::remove_cvref_t<U>, Result>)Result(U&& value)
-      : held_(std::in_place_index<0>, std::forward<U>(value)) {}
+  template <std::convertible_to<T> U = T>
+  Result(U&& value) : held_(std::in_place_index<0>, std::forward<U>(value)) {}
   Result(Problem problem) : held_(std::in_place_index<1>, std::move(problem)) {}
 
   explicit operator bool() const { return held_.index() == 0; }

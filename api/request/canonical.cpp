@@ -1,9 +1,10 @@
+#include "api/request/canonical.h"
+
 #include <nlohmann/json.hpp>
 
 #include "api/base/overloaded.h"
-#include "api/request/backdrop.h"
-#include "api/request/objects.h"
-#include "api/request/parse.h"
+#include "api/request/backdrop_parameters.h"
+#include "api/request/object_parameters.h"
 
 namespace translucube::api {
 namespace {

@@ -1,43 +1,19 @@
 #include "api/request/catalog.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <system_error>
 #include <utility>
 
-#include "api/base/json_reader.h"
-#include "api/request/parse.h"
-#include "api/request/request_reader.h"
+#include "api/base/config_file.h"
+#include "api/request/canonical.h"
+#include "api/request/read_request.h"
 
 namespace translucube::api {
 namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
-
-constexpr std::uint64_t largest_config_bytes = 1 << 22;
-
-[[noreturn]] void refuse(const fs::path& file, const Faults& faults) {
-  std::string message = file.string() + " is not a valid configuration";
-  for (const Fault& fault : faults.list())
-    message +=
-        "\n  " + (fault.pointer.empty() ? "(document)" : fault.pointer) + ": " + fault.detail;
-  throw ConfigError(message);
-}
-
-JsonDocument read_config(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::error_code error;
-  if (!stream || fs::is_directory(file, error))
-    throw ConfigError(file.string() + " cannot be opened for reading");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw ConfigError(file.string() + " cannot be read");
-  auto read = read_json(text, largest_config_bytes);
-  if (!read) throw ConfigError(file.string() + ": " + to_text(read.problem()));
-  return *std::move(read);
-}
 
 /// Names stand in requests, paths of URLs and terminals.
 bool is_name(const std::string& name) {
@@ -67,21 +43,21 @@ std::map<std::string, fs::path> named_files(const fs::path& folder,
   return files;
 }
 
-NamedAbsorber read_absorber_file(const fs::path& file) {
-  auto [value, faults] = read_config(file);
+NamedAbsorber read_absorber_file(const fs::path& path) {
+  ConfigFile file(path);
+  FieldReader& object = file.fields();
   NamedAbsorber absorber;
-  ObjectReader object(value, "", faults);
   absorber.description = object.string("description", Presence::required).value_or("");
   object.string("source", Presence::required);
   if (auto spectrum = read_spectrum(object)) absorber.spectrum = std::move(*spectrum);
   object.refuse_unknown_keys();
-  if (!faults.empty()) refuse(file, faults);
+  file.refuse_faults();
   return absorber;
 }
 
 Limits read_limits(const json& value, const std::string& pointer, Faults& faults) {
   Limits limits;
-  ObjectReader object(value, pointer, faults);
+  FieldReader object(value, pointer, faults);
   if (const auto bytes = object.integer("body_bytes", 1024, std::uint64_t{1} << 30))
     limits.body_bytes = *bytes;
   if (const auto pixels = object.integer("pixels", 1, std::uint64_t{1} << 32))
@@ -99,19 +75,19 @@ Limits read_limits(const json& value, const std::string& pointer, Faults& faults
 }
 
 std::vector<fs::path> read_folders(const json& value, const std::string& pointer,
-                                   const fs::path& folder, Faults& faults) {
+                                   ConfigFile& file) {
   std::vector<fs::path> folders;
-  if (!value.is_array()) faults.add(pointer, "must be an array of folders");
+  if (!value.is_array()) file.faults().add(pointer, "must be an array of folders");
   for (std::size_t i = 0; value.is_array() && i < value.size(); ++i) {
     const std::string where = pointer + '/' + std::to_string(i);
     std::error_code error;
     if (!value[i].is_string()) {
-      faults.add(where, "must be a folder");
+      file.faults().add(where, "must be a folder");
       continue;
     }
-    fs::path path = fs::canonical(folder / value[i].get<std::string>(), error);
+    fs::path path = fs::canonical(file.folder() / value[i].get<std::string>(), error);
     if (error || !fs::is_directory(path, error))
-      faults.add(where, "there is no such folder");
+      file.faults().add(where, "there is no such folder");
     else
       folders.push_back(std::move(path));
   }
@@ -145,36 +121,36 @@ void read_defaults(const json& value, Catalog& catalog, Faults& faults) {
 
 }  // namespace
 
-Catalog load_catalog(const fs::path& service_json) {
-  auto [value, faults] = read_config(service_json);
-  const fs::path folder = fs::absolute(service_json).parent_path();
-  const auto path = [&](ObjectReader& object, const char* key) {
+Catalog load_catalog(ConfigFile& file) {
+  FieldReader& object = file.fields();
+  const auto path = [&](const char* key) {
     const auto text = object.string(key, Presence::required);
-    return text ? (folder / *text).lexically_normal() : fs::path{};
+    return text ? file.resolved(*text) : fs::path{};
   };
-
   Catalog catalog;
-  catalog.server.data_folder = (folder / "../data").lexically_normal();
-  ObjectReader object(value, "", faults);
   if (const json* limits = object.find("limits"))
-    catalog.limits = read_limits(*limits, "/limits", faults);
-  if (const json* server = object.find("server"))
-    catalog.server = read_server(*server, "/server", catalog.server, folder, faults);
-  catalog.display_config = path(object, "display_config");
-  const fs::path absorbers = path(object, "absorbers");
-  const fs::path environments = path(object, "environments");
+    catalog.limits = read_limits(*limits, "/limits", file.faults());
+  object.find("server");  // for who serves: server/base/server_config.h
+  catalog.display_config = path("display_config");
+  const fs::path absorbers = path("absorbers");
+  const fs::path environments = path("environments");
   if (const json* folders = object.find("file_folders"))
-    catalog.file_folders = read_folders(*folders, "/file_folders", folder, faults);
+    catalog.file_folders = read_folders(*folders, "/file_folders", file);
   const json* defaults = object.find("request_defaults", Presence::required);
   object.refuse_unknown_keys();
-  if (!faults.empty()) refuse(service_json, faults);
+  file.refuse_faults();
 
-  for (const auto& [name, file] : named_files(absorbers, {".json"}))
-    catalog.absorbers.emplace(name, read_absorber_file(file));
+  for (const auto& [name, spectrum] : named_files(absorbers, {".json"}))
+    catalog.absorbers.emplace(name, read_absorber_file(spectrum));
   catalog.environments = named_files(environments, {".exr", ".hdr"});
-  read_defaults(*defaults, catalog, faults);
-  if (!faults.empty()) refuse(service_json, faults);
+  read_defaults(*defaults, catalog, file.faults());
+  file.refuse_faults();
   return catalog;
+}
+
+Catalog load_catalog(const fs::path& service_json) {
+  ConfigFile file(service_json);
+  return load_catalog(file);
 }
 
 Catalog without_limits(Catalog catalog) {

@@ -1,23 +1,19 @@
 #pragma once
 
-// What a request may name, and the defaults and limits it is held to: config/service.json with the
-// folders it points to, read once at the start.
+// What a request may name, and the defaults and limits it is held to: from config/service.json and
+// the folders it points to, read once at the start.
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "api/config/server_config.h"
 #include "api/request/request.h"
 
 namespace translucube::api {
 
-struct ConfigError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+class ConfigFile;
 
 struct NamedAbsorber {
   std::string description;
@@ -36,7 +32,6 @@ struct Limits {
 struct Catalog {
   RenderRequest defaults;  ///< every default of a request
   Limits limits;
-  ServerConfig server;
   std::map<std::string, NamedAbsorber> absorbers;
   std::map<std::string, std::filesystem::path> environments;
   std::filesystem::path display_config;             ///< OpenColorIO config
@@ -44,8 +39,9 @@ struct Catalog {
   bool any_file = false;                            ///< the command line: any path
 };
 
-/// Reads service.json and the folders it names (relative to its own place).
-/// Throws ConfigError, which says the file, the pointer and the reason.
+/// Reads a catalog from service.json, all but its section `server`, and from the folders it names.
+/// Throws ConfigError where this or a section that was read before has faults.
+Catalog load_catalog(ConfigFile& service_json);
 Catalog load_catalog(const std::filesystem::path& service_json);
 
 /// For what was accepted before: it stays legal, whatever the limits are now.

@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "api/base/json_reader.h"
-#include "api/request/request_reader.h"
+#include "api/base/text.h"
+#include "api/request/read_request.h"
 
 namespace translucube::api {
 namespace {
@@ -16,7 +17,7 @@ using namespace nlohmann::literals;
 
 void read_image(const json& value, const std::string& pointer, const Limits& limits,
                 RenderRequest& out, Faults& faults) {
-  ObjectReader image(value, pointer, faults);
+  FieldReader image(value, pointer, faults);
   const auto longest = std::min<std::uint64_t>(limits.pixels, std::numeric_limits<int>::max());
   const auto width = image.integer("width", 1, longest);
   const auto height = image.integer("height", 1, longest);
@@ -30,7 +31,7 @@ void read_image(const json& value, const std::string& pointer, const Limits& lim
 
 void read_quality(const json& value, const std::string& pointer, const Limits& limits, Quality& out,
                   Faults& faults) {
-  ObjectReader quality(value, pointer, faults);
+  FieldReader quality(value, pointer, faults);
   quality.exclusive({"samples", "relative_error", "seconds"}, Presence::required);
   if (const auto samples = quality.integer("samples", 1, limits.samples))
     out = SampleTarget{static_cast<std::uint32_t>(*samples)};
@@ -97,7 +98,7 @@ void refuse_what_the_model_cannot_serve(const json& value, const std::string& po
 
 void read_request(const json& value, const std::string& pointer, const Catalog& catalog,
                   MaterialPoint point, RenderRequest& out, Faults& faults) {
-  ObjectReader request(value, pointer, faults);
+  FieldReader request(value, pointer, faults);
   const Presence material_presence =
       point == MaterialPoint::required ? Presence::required : Presence::optional;
   if (const json* material = request.find("material", material_presence))

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "api/request/backdrop.h"
-#include "api/request/request_reader.h"
+#include "api/request/backdrop_parameters.h"
+#include "api/request/read_request.h"
 
 namespace translucube::api {
 namespace {
 
 template <class Enum, std::size_t n>
-void read_name(ObjectReader& reader, const char* key, const std::array<const char*, n>& names,
+void read_name(FieldReader& reader, const char* key, const std::array<const char*, n>& names,
                Enum& out) {
   const auto name = reader.string(key);
   if (!name) return;
@@ -29,7 +29,7 @@ void read_backdrop(const nlohmann::json& value, const std::string& pointer,
                    std::optional<BackdropSpec>& out, Faults& faults) {
   if (value.is_boolean() && !value.get<bool>()) return out.reset();
   if (!value.is_object()) return faults.add(pointer, "must be false or an object");
-  ObjectReader reader(value, pointer, faults);
+  FieldReader reader(value, pointer, faults);
   BackdropSpec backdrop = out.value_or(BackdropSpec{});
   read_name(reader, "type", backdrop_types, backdrop.kind);
   read_name(reader, "pattern", pattern_names, backdrop.pattern);

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "api/request/request_reader.h"
+#include "api/request/read_request.h"
 
 namespace translucube::api {
 namespace {
@@ -18,7 +18,7 @@ constexpr Range ior_range{1, 4};
 constexpr Range anisotropy_range{-1, 1, true, true};
 
 CubePoint read_cube(const json& value, const std::string& pointer, Faults& faults) {
-  ObjectReader cube(value, pointer, faults);
+  FieldReader cube(value, pointer, faults);
   CubePoint point;
   point.absorption = cube.number("absorption", unit_range, Presence::required).value_or(0);
   point.roughness = cube.number("roughness", unit_range, Presence::required).value_or(0);
@@ -28,9 +28,8 @@ CubePoint read_cube(const json& value, const std::string& pointer, Faults& fault
 }
 
 /// g and ior may stand here or in the material, not in both.
-CoefficientsRequest read_coefficients(ObjectReader& material, MaterialRequest& out,
-                                      Faults& faults) {
-  ObjectReader object(*material.find("coefficients"), material.pointer_to("coefficients"), faults);
+CoefficientsRequest read_coefficients(FieldReader& material, MaterialRequest& out, Faults& faults) {
+  FieldReader object(*material.find("coefficients"), material.pointer_to("coefficients"), faults);
   CoefficientsRequest coefficients;
   object.exclusive({"sigma_a", "sigma_a_peak"}, Presence::required);
   if (const auto sigma_a = object.triple("sigma_a", coefficient_range))
@@ -54,7 +53,7 @@ CoefficientsRequest read_coefficients(ObjectReader& material, MaterialRequest& o
 
 std::optional<AbsorberRequest> read_absorber_object(const json& value, const std::string& pointer,
                                                     Faults& faults) {
-  ObjectReader object(value, pointer, faults);
+  FieldReader object(value, pointer, faults);
   std::optional<AbsorberRequest> absorber;
   const bool spectral = object.has("wavelengths_nm") || object.has("values");
   if (object.has("rgb") && spectral) {
@@ -82,7 +81,7 @@ void read_pigment(const json& value, const std::string& pointer, std::optional<d
   if (value.is_boolean() && !value.get<bool>()) {
     out.reset();
   } else if (value.is_object()) {
-    ObjectReader pigment(value, pointer, faults);
+    FieldReader pigment(value, pointer, faults);
     const auto ratio =
         pigment.number("absorption_per_scattering", {.low = 0, .high = 1e18}, Presence::required);
     if (ratio) out = *ratio;
@@ -97,7 +96,7 @@ void read_oil_film(const json& value, const std::string& pointer,
   if (value.is_boolean() && !value.get<bool>()) return out.reset();
   if (!value.is_object())
     return faults.add(pointer, "must be false or {\"normal\": [x, y, z], \"offset_mm\": number}");
-  ObjectReader reader(value, pointer, faults);
+  FieldReader reader(value, pointer, faults);
   OilFilmRequest film = out.value_or(OilFilmRequest{});
   if (const auto normal = reader.triple("normal", {})) {
     film.normal = *normal;
@@ -125,7 +124,7 @@ void read_absorber(const json& value, const std::string& pointer, const Catalog&
   }
 }
 
-std::optional<SpectralAbsorber> read_spectrum(ObjectReader& object) {
+std::optional<SpectralAbsorber> read_spectrum(FieldReader& object) {
   const auto wavelengths =
       object.numbers("wavelengths_nm", {.low = 0, .low_open = true}, most_spectrum_samples);
   const auto values = object.numbers("values", {.low = 0}, most_spectrum_samples);
@@ -158,7 +157,7 @@ std::optional<SpectralAbsorber> read_spectrum(ObjectReader& object) {
 
 void read_material(const json& value, const std::string& pointer, const Catalog& catalog,
                    MaterialPoint point, MaterialRequest& out, Faults& faults) {
-  ObjectReader material(value, pointer, faults);
+  FieldReader material(value, pointer, faults);
   if (point == MaterialPoint::required) {
     material.exclusive({"cube", "coefficients"}, Presence::required);
     if (material.has("coefficients")) out.point = read_coefficients(material, out, faults);

@@ -2,8 +2,8 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 
-#include "api/request/objects.h"
-#include "api/request/request_reader.h"
+#include "api/request/object_parameters.h"
+#include "api/request/read_request.h"
 
 namespace translucube::api {
 namespace {
@@ -14,7 +14,7 @@ using nlohmann::json;
 constexpr double least_share = 1e-6;
 
 void check_extents(std::initializer_list<std::pair<const char*, double>> extents,
-                   ObjectReader& object) {
+                   FieldReader& object) {
   double largest = 0;
   for (const auto& [name, extent] : extents) largest = std::max(largest, extent);
   for (const auto& [name, extent] : extents)
@@ -23,32 +23,32 @@ void check_extents(std::initializer_list<std::pair<const char*, double>> extents
 }
 
 /// What must hold between the parameters of an object.
-void check(const SphereObject&, ObjectReader&) {}
-void check(const PlateObject& plate, ObjectReader& object) {
+void check(const SphereObject&, FieldReader&) {}
+void check(const PlateObject& plate, FieldReader& object) {
   check_extents({{"width_mm", plate.width_mm},
                  {"height_mm", plate.height_mm},
                  {"thickness_mm", plate.thickness_mm}},
                 object);
 }
-void check(const BoxObject& box, ObjectReader& object) {
+void check(const BoxObject& box, FieldReader& object) {
   check_extents(
       {{"width_mm", box.width_mm}, {"height_mm", box.height_mm}, {"depth_mm", box.depth_mm}},
       object);
 }
-void check(const WedgeObject& wedge, ObjectReader& object) {
+void check(const WedgeObject& wedge, FieldReader& object) {
   check_extents(
       {{"width_mm", wedge.width_mm}, {"height_mm", wedge.height_mm}, {"thick_mm", wedge.thick_mm}},
       object);
   if (wedge.thin_mm > wedge.thick_mm) object.fault("thin_mm", "must be at most thick_mm");
 }
-void check(const BowlObject& bowl, ObjectReader& object) {
+void check(const BowlObject& bowl, FieldReader& object) {
   check_extents({{"radius_mm", bowl.radius_mm}, {"thickness_mm", bowl.thickness_mm}}, object);
   if (bowl.thickness_mm >= bowl.radius_mm)
     object.fault("thickness_mm", "must be less than radius_mm");
 }
 
 template <class Object>
-void read_lengths(ObjectReader& reader, ObjectRequest& out, const Faults& faults) {
+void read_lengths(FieldReader& reader, ObjectRequest& out, const Faults& faults) {
   const auto* before = std::get_if<Object>(&out);
   Object object = before ? *before : Object{};
   const std::size_t faults_before = faults.count();
@@ -59,7 +59,7 @@ void read_lengths(ObjectReader& reader, ObjectRequest& out, const Faults& faults
   out = object;
 }
 
-void read_mesh(ObjectReader& reader, const Catalog& catalog, ObjectRequest& out, Faults& faults) {
+void read_mesh(FieldReader& reader, const Catalog& catalog, ObjectRequest& out, Faults& faults) {
   const auto file = reader.string("file", Presence::required);
   if (!file) return;
   const std::string where = reader.pointer_to("file");
@@ -85,7 +85,7 @@ std::string type_of(const ObjectRequest& request) {
 
 void read_object(const json& value, const std::string& pointer, const Catalog& catalog,
                  ObjectRequest& out, Faults& faults) {
-  ObjectReader reader(value, pointer, faults);
+  FieldReader reader(value, pointer, faults);
   std::string type = type_of(out);
   const auto given = reader.string("type");
   if (reader.has("type") && !given) return;  // one fault says enough

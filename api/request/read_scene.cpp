@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "api/request/request_reader.h"
+#include "api/request/read_request.h"
 
 namespace translucube::api {
 namespace {
@@ -17,7 +17,7 @@ constexpr Range radiance_range{0, 1e9};
 
 void read_environment(const json& value, const std::string& pointer, const Catalog& catalog,
                       EnvironmentRequest& out, Faults& faults) {
-  ObjectReader environment(value, pointer, faults);
+  FieldReader environment(value, pointer, faults);
   environment.exclusive({"image", "constant", "file"}, Presence::optional);
   if (auto image = environment.string("image")) {
     if (catalog.environments.contains(*image)) {
@@ -50,7 +50,7 @@ Vec3 direction(Vec3 v) {
 void read_camera(const json& value, const std::string& pointer, CameraRequest& out,
                  Faults& faults) {
   const std::size_t faults_before = faults.count();
-  ObjectReader camera(value, pointer, faults);
+  FieldReader camera(value, pointer, faults);
   if (const auto position = camera.triple("position_mm", position_range))
     out.position_mm = *position;
   if (const auto target = camera.triple("target_mm", position_range)) out.target_mm = *target;
@@ -73,7 +73,7 @@ void read_camera(const json& value, const std::string& pointer, CameraRequest& o
 
 void read_scene(const json& value, const std::string& pointer, const Catalog& catalog,
                 RenderRequest& out, Faults& faults) {
-  ObjectReader scene(value, pointer, faults);
+  FieldReader scene(value, pointer, faults);
   if (const json* object = scene.find("object"))
     read_object(*object, scene.pointer_to("object"), catalog, out.object, faults);
   if (const json* environment = scene.find("environment"))

@@ -2,7 +2,8 @@
 #include <cmath>
 
 #include "api/base/json_reader.h"
-#include "api/request/request_reader.h"
+#include "api/base/text.h"
+#include "api/request/read_request.h"
 #include "api/request/sweep.h"
 
 namespace translucube::api {
@@ -15,7 +16,7 @@ constexpr std::size_t most_absorbers = 256;
 /// {"from", "to", "count"}: both ends exact.
 std::vector<double> read_interval(const json& value, const std::string& pointer, std::uint64_t most,
                                   Faults& faults) {
-  ObjectReader interval(value, pointer, faults);
+  FieldReader interval(value, pointer, faults);
   const auto from = interval.number("from", unit_range, Presence::required);
   const auto to = interval.number("to", unit_range, Presence::required);
   const auto count = interval.integer("count", 1, most, Presence::required);
@@ -30,7 +31,7 @@ std::vector<double> read_interval(const json& value, const std::string& pointer,
 }
 
 /// The values of an axis over `out`, which holds the base's; wrong ones are faults.
-void read_axis(ObjectReader& axes, const char* key, std::uint64_t most, std::vector<double>& out,
+void read_axis(FieldReader& axes, const char* key, std::uint64_t most, std::vector<double>& out,
                Faults& faults) {
   const json* value = axes.find(key);
   if (value == nullptr) return;
@@ -114,7 +115,7 @@ Result<Sweep> parse_sweep_request(std::string_view text, const Catalog& catalog)
   auto& [value, faults] = *read;
 
   Sweep sweep{catalog.defaults, {}, {}, {}, {}};
-  ObjectReader object(value, "", faults);
+  FieldReader object(value, "", faults);
   if (const json* base = object.find("base", Presence::required))
     read_whole_request(*base, "/base", catalog, sweep.base, faults);
   if (const auto* cube = std::get_if<CubePoint>(&sweep.base.material.point)) {
@@ -124,7 +125,7 @@ Result<Sweep> parse_sweep_request(std::string_view text, const Catalog& catalog)
   }
   sweep.absorbers = {sweep.base.material.absorber};
   if (const json* axes = object.find("axes")) {
-    ObjectReader reader(*axes, "/axes", faults);
+    FieldReader reader(*axes, "/axes", faults);
     read_axis(reader, "absorption", catalog.limits.points, sweep.absorption, faults);
     read_axis(reader, "roughness", catalog.limits.points, sweep.roughness, faults);
     read_axis(reader, "scattering", catalog.limits.points, sweep.scattering, faults);

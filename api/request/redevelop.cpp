@@ -1,13 +1,14 @@
 #include "api/request/redevelop.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "api/base/json_reader.h"
-#include "api/request/parse.h"
-#include "api/request/request_reader.h"
+#include "api/base/text.h"
+#include "api/request/canonical.h"
+#include "api/request/read_request.h"
+#include "api/request/scene_spec.h"
 #include "renderer/optics/material_cube.h"
 
 namespace translucube::api {
@@ -67,11 +68,9 @@ AbsorberRequest read_asked_absorber(const std::string& text, const Catalog& cata
 }  // namespace
 
 std::optional<double> absorption_number(std::string_view text) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || at != end || !(value >= 0 && value <= 1)) return std::nullopt;
-  return value + 0.0;  // minus zero is zero
+  const auto value = number_of<double>(text);
+  if (!value || !(*value >= 0 && *value <= 1)) return std::nullopt;
+  return *value + 0.0;  // minus zero is zero
 }
 
 Result<Redeveloped> redevelop(std::string_view canonical_request, const Redevelopment& asked,

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "api/request/request_reader.h"
+#include "api/request/read_request.h"
 
 namespace translucube::api {
 namespace {

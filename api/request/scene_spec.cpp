@@ -1,8 +1,9 @@
+#include "api/request/scene_spec.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "api/base/overloaded.h"
-#include "api/request/parse.h"
 #include "renderer/optics/material_cube.h"
 
 namespace translucube::api {
@@ -122,6 +123,16 @@ SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
     const double densest =
         from_cube(nearly_black, 0, request.material.reference_thickness_mm).sigma_a_peak;
     spec.explorable = Explorable{std::isinf(peak) ? densest : std::max(densest, peak)};
+  }
+  return spec;
+}
+
+SceneSpec scene_spec(std::span<const RenderRequest> lanes, const Catalog& catalog) {
+  SceneSpec spec = scene_spec(lanes.front(), catalog);
+  for (const RenderRequest& lane : lanes.subspan(1)) {
+    const SceneSpec other = scene_spec(lane, catalog);
+    spec.more_absorptions.push_back(
+        {other.material.absorber, other.material.coefficients.sigma_a_peak});
   }
   return spec;
 }

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <nlohmann/json.hpp>
 
-#include "api/request/parse.h"
+#include "api/request/canonical.h"
 
 namespace translucube::api {
 namespace {
@@ -113,16 +113,6 @@ std::string counts_json(const Sweep& sweep, const Limits& limits) {
               {"camera_samples",
                target ? json(double(pixels) * target->samples * double(images)) : json(nullptr)}}
       .dump();
-}
-
-SceneSpec scene_spec(std::span<const RenderRequest> lanes, const Catalog& catalog) {
-  SceneSpec spec = scene_spec(lanes.front(), catalog);
-  for (const RenderRequest& lane : lanes.subspan(1)) {
-    const SceneSpec other = scene_spec(lane, catalog);
-    spec.more_absorptions.push_back(
-        {other.material.absorber, other.material.coefficients.sigma_a_peak});
-  }
-  return spec;
 }
 
 }  // namespace translucube::api

@@ -4,7 +4,6 @@
 // the absorber, come from one traced image.
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,8 +55,5 @@ std::string canonical_json(const Sweep& sweep);
 /// What a dry run answers: {"points", "traced_images", "pixels" (of each image), "camera_samples"
 /// (of the whole sweep; null where the quality does not say)}.
 std::string counts_json(const Sweep& sweep, const Limits& limits);
-
-/// What the renderer needs to trace these requests at once. They differ in their absorption only.
-SceneSpec scene_spec(std::span<const RenderRequest> lanes, const Catalog& catalog);
 
 }  // namespace translucube::api

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <mutex>
 
-#include "picture/file_sink.h"
+#include "picture/output_file.h"
 
 namespace translucube {
 namespace {
@@ -20,31 +20,32 @@ void use_one_thread() {
   });
 }
 
-/// Reports success to the codec whatever happens: the sink tells the truth.
-class SinkProxy final : public OIIO::Filesystem::IOProxy {
+/// A file as OpenImageIO's codecs write it: one place after the other, but for those that they turn
+/// back to.
+class FileProxy final : public OIIO::Filesystem::IOProxy {
  public:
-  SinkProxy(const std::filesystem::path& file, FileSink& sink)
-      : IOProxy(file.string(), Write), sink_(sink) {}
+  FileProxy(const std::filesystem::path& name, OutputFile& file)
+      : IOProxy(name.string(), Write), file_(file) {}
 
   // Not "file": OpenImageIO would take that for its own class and reach for its FILE*.
   const char* proxytype() const override { return "translucube"; }
-  bool opened() const override { return sink_.is_open(); }
+  bool opened() const override { return file_.is_open(); }
   std::size_t size() const override { return static_cast<std::size_t>(end_); }
 
   std::size_t read(void* buffer, std::size_t bytes) override {
-    const std::size_t got = sink_.read(static_cast<std::uint64_t>(m_pos), buffer, bytes);
+    const std::size_t got = file_.read(buffer, bytes, m_pos);
     m_pos += static_cast<std::int64_t>(got);
     return got;
   }
   std::size_t write(const void* buffer, std::size_t bytes) override {
-    sink_.write(static_cast<std::uint64_t>(m_pos), buffer, bytes);
+    file_.write(buffer, bytes, m_pos);
     m_pos += static_cast<std::int64_t>(bytes);
     end_ = std::max(end_, m_pos);
     return bytes;
   }
 
  private:
-  FileSink& sink_;
+  OutputFile& file_;
   std::int64_t end_ = 0;
 };
 
@@ -57,8 +58,9 @@ std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file) 
   if (auto input = OIIO::ImageInput::open(file.string())) return input;
   const std::string problem = OIIO::geterror();
   // A stored artifact or a download may have no extension to go by.
-  for (const ImageFormat format : {ImageFormat::png, ImageFormat::tiff, ImageFormat::jpeg}) {
-    auto input = OIIO::ImageInput::create(std::string(name(format)));
+  for (const ImageFormatRow& row : image_formats) {
+    if (row.library != ImageLibrary::open_image_io) continue;
+    auto input = OIIO::ImageInput::create(std::string(row.name));
     OIIO::ImageSpec spec;
     if (input && input->open(file.string(), spec)) return input;
   }
@@ -70,15 +72,15 @@ void write_image_file(const std::filesystem::path& file, ImageFormat format,
                       const OIIO::ImageSpec& spec,
                       const std::function<bool(OIIO::ImageOutput&)>& write) {
   use_one_thread();
-  FileSink sink(file);
+  OutputFile sink(file);
   if (!sink.is_open()) fail_image(file, std::strerror(sink.finish()));
-  SinkProxy proxy(file, sink);
+  FileProxy proxy(file, sink);
   auto output = OIIO::ImageOutput::create(std::string(name(format)));
   if (!output || !output->set_ioproxy(&proxy))
     fail_image(file, "this OpenImageIO cannot write " + std::string(name(format)));
   const bool written = output->open(file.string(), spec) && write(*output) && output->close();
   const std::string problem = output->geterror();
-  output.reset();  // before the proxy that it writes to
+  output.reset();  // before what it writes to
   if (const int error_number = sink.finish()) fail_image(file, std::strerror(error_number));
   if (!written) fail_image(file, "cannot be written (" + problem + ")");
 }

@@ -4,23 +4,23 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "renderer/base/octave_grid.h"
 #include "renderer/base/vec.h"
 
 namespace translucube {
 
-/// From RGB to RGB, row-major.
+/// A linear map from RGB to RGB, row-major.
 using ColorOperator = std::array<float, 9>;
 inline constexpr ColorOperator identity_operator{1, 0, 0, 0, 1, 0, 0, 0, 1};
 inline Rgb apply_operator(const ColorOperator& m, Rgb c) {
   return {m[0] * c.r + m[1] * c.g + m[2] * c.b, m[3] * c.r + m[4] * c.g + m[5] * c.b,
           m[6] * c.r + m[7] * c.g + m[8] * c.b};
 }
-/// First b, then a.
+/// The operator of b first, then a.
 inline ColorOperator multiply(const ColorOperator& a, const ColorOperator& b) {
   ColorOperator m{};
   for (int i = 0; i < 3; ++i)
@@ -29,9 +29,10 @@ inline ColorOperator multiply(const ColorOperator& a, const ColorOperator& b) {
   return m;
 }
 
-/// An operator as a function of x >= 1, linear within 32 segments of equal width to the octave.
+/// An operator as a function of x >= 1, linear within 32 segments to the octave.
 class ColorOperatorTable {
  public:
+  using Grid = OctaveGrid<float, 5>;
   /// Column-major, each column a register of four.
   struct Node {
     float column[3][4] = {};
@@ -41,20 +42,16 @@ class ColorOperatorTable {
   ColorOperatorTable() : nodes_(2) {}
   /// `value(x)` for x up to 2^octaves, octaves > 0; from there on it stays.
   template <class Value>
-  ColorOperatorTable(int octaves, Value&& value) : nodes_(std::size_t(to_octave) * octaves + 1) {
+  ColorOperatorTable(int octaves, Value&& value) : nodes_(Grid::nodes(octaves)) {
     for (std::size_t node = 0; node < nodes_.size(); ++node) {
-      const ColorOperator m =
-          value(std::ldexp(1 + static_cast<double>(node % to_octave) / to_octave,
-                           static_cast<int>(node / to_octave)));
+      const ColorOperator m = value(Grid::at(node));
       for (int i = 0; i < 9; ++i) nodes_[node].column[i % 3][i / 3] = m[i];
     }
   }
 
   ColorOperator at(double x) const {
-    const std::uint32_t position =
-        std::bit_cast<std::uint32_t>(static_cast<float>(x)) - std::bit_cast<std::uint32_t>(1.0f);
-    const std::size_t segment = std::min<std::size_t>(position >> fraction_bits, segments() - 1);
-    const float t = static_cast<float>(position & fraction_mask) * (1.0f / (1u << fraction_bits));
+    const auto [position, t] = Grid::place(static_cast<float>(x));
+    const std::size_t segment = std::min(position, segments() - 1);
     const Node &a = nodes_[segment], &b = nodes_[segment + 1];
     ColorOperator m;
     for (int i = 0; i < 9; ++i) {
@@ -64,16 +61,13 @@ class ColorOperatorTable {
     return m;
   }
 
-  // For those that apply many at a time. Of x as a float, less that of 1, the exponent and the
-  // leading bits of the mantissa are the segment; in the rest the operator is linear.
-  static constexpr int segment_bits = 5, fraction_bits = 23 - segment_bits;
-  static constexpr std::uint32_t fraction_mask = (1u << fraction_bits) - 1;
+  // What those read who apply many at a time.
+  static constexpr int fraction_bits = Grid::fraction_bits;
+  static constexpr std::uint32_t fraction_mask = Grid::fraction_mask;
   const Node* nodes() const { return nodes_.data(); }
   std::size_t segments() const { return nodes_.size() - 1; }
 
  private:
-  static constexpr int to_octave = 1 << segment_bits;
-
   std::vector<Node> nodes_;
 };
 

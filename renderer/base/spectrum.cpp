@@ -1,4 +1,4 @@
-// The RGB <-> XYZ matrices of the tables in spectrum_tables.cpp.
+// The RGB <-> XYZ matrices of the tables in spectrum_tables.cpp, and the colours of wavelengths.
 
 #include "renderer/base/spectrum.h"
 
@@ -51,5 +51,19 @@ constexpr Matrix3 primary_matrix() {
 
 constinit const Matrix3 rgb_to_xyz = primary_matrix();
 constinit const Matrix3 xyz_to_rgb = inverse(primary_matrix());
+
+std::array<double, 3> rgb_of_d65(int sample) {
+  static const double luminance = [] {
+    double sum = 0;
+    for (int i = 0; i < spectrum_size; ++i) sum += cie_y[i] * cie_d65[i];
+    return sum;
+  }();
+  const std::array<double, 3> xyz{cie_x[sample], cie_y[sample], cie_z[sample]};
+  std::array<double, 3> rgb{};
+  for (int row = 0; row < 3; ++row)
+    for (int j = 0; j < 3; ++j)
+      rgb[row] += xyz_to_rgb[row][j] * xyz[j] * cie_d65[sample] / luminance;
+  return rgb;
+}
 
 }  // namespace translucube

@@ -2,36 +2,18 @@
 
 #include <algorithm>
 
-#include "renderer/base/spectrum.h"
+#include "renderer/optics/wavelengths.h"
 
 namespace translucube {
 
 SpectralLane::SpectralLane(const SpectralAbsorber& absorber, double sigma_a_peak)
     : sigma_a_peak_(sigma_a_peak) {
-  SpectrumTable k;
-  double white = 0;  // luminance of the illuminant
-  for (int i = 0; i < spectrum_size; ++i) {
-    k[i] = relative_absorption(absorber, first_wavelength_nm + i * wavelength_step_nm);
-    white += cie_y[i] * cie_d65[i];
-  }
-  const std::array<const SpectrumTable*, 3> cmf{&cie_x, &cie_y, &cie_z};
-  const std::array<const SpectrumTable*, 3> basis{&basis_r, &basis_g, &basis_b};
+  const std::vector<Wavelength> wavelengths = wavelengths_of(absorber);
   constexpr int octaves = 40;
   table_ = ColorOperatorTable(octaves, [&](double x) {
-    Matrix3 xyz{};
-    for (int i = 0; i < spectrum_size; ++i) {
-      const double transmitted = std::exp(-k[i] * (x - 1)) * cie_d65[i] / white;
-      for (int row = 0; row < 3; ++row)
-        for (int c = 0; c < 3; ++c) xyz[row][c] += (*cmf[row])[i] * (*basis[c])[i] * transmitted;
-    }
-    ColorOperator m;
-    for (int row = 0; row < 3; ++row)
-      for (int c = 0; c < 3; ++c) {
-        double rgb = 0;
-        for (int j = 0; j < 3; ++j) rgb += xyz_to_rgb[row][j] * xyz[j][c];
-        m[3 * row + c] = static_cast<float>(rgb);
-      }
-    return m;
+    return color_operator(wavelengths, [&](std::size_t i) {
+      return std::exp(-wavelengths[i].relative_absorption * (x - 1));
+    });
   });
 }
 

@@ -9,7 +9,7 @@ TraceCounters& TraceCounters::operator+=(const TraceCounters& other) {
   camera_samples += other.camera_samples;
   flights += other.flights;
   boundary_events += other.boundary_events;
-  connections += other.connections;
+  light_samples += other.light_samples;
   nan_samples += other.nan_samples;
   truncated_energy += other.truncated_energy;
   return *this;

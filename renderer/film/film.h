@@ -18,7 +18,7 @@ struct TraceCounters {
   std::uint64_t camera_samples = 0;
   std::uint64_t flights = 0;          ///< free flights and large steps inside the body
   std::uint64_t boundary_events = 0;  ///< Fresnel or microfacet events
-  std::uint64_t connections = 0;      ///< next-event estimations
+  std::uint64_t light_samples = 0;    ///< lights looked for: next-event estimations
   std::uint64_t nan_samples = 0;      ///< non-finite contributions: a bug, fails the render
   double truncated_energy = 0;  ///< throughput given up at the path cap, per camera sample sum
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "renderer/base/lagrange.h"
+
 namespace translucube {
 
 double LengthBins::length(int bin) const {
@@ -30,43 +32,35 @@ LengthBins length_bins(double densest, double sigma_s) {
           usual.nodes + static_cast<int>(below + above)};
 }
 
-namespace {
-
-/// Lagrange's weights at x of the cubic through four nodes; they add up to 1.
-std::array<float, 4> lagrange(const std::array<float, 4>& nodes, float x) {
-  std::array<float, 4> weights;
-  for (int i = 0; i < 4; ++i) {
-    weights[i] = 1;
-    for (int j = 0; j < 4; ++j)
-      if (j != i) weights[i] *= (x - nodes[j]) / (nodes[i] - nodes[j]);
-  }
-  weights[1] = 1 - (weights[0] + weights[2] + weights[3]);
-  return weights;
-}
-
-}  // namespace
-
 BinSpread::BinSpread(const LengthBins& bins)
     : bins_(bins), log_first_(std::log(bins.first)), inverse_step_(1 / bins.step()) {
   for (int i = 0; i < 3; ++i) short_nodes_[i] = static_cast<float>(std::exp(i * bins.step()));
 }
 
+namespace {
+
+/// The weights from this bin on, the second of them what rounding leaves of 1.
+BinWeights adding_up(int bin, std::array<float, 4> weights) {
+  weights[1] = 1 - (weights[0] + weights[2] + weights[3]);
+  return {bin, weights};
+}
+
+}  // namespace
+
 BinWeights BinSpread::operator()(double length) const {
   if (length == 0) return {};
-  if (length < bins_.first)
-    return {1, lagrange({0, short_nodes_[0], short_nodes_[1], short_nodes_[2]},
-                        static_cast<float>(length / bins_.first))};
+  if (length < bins_.first) {
+    const std::array<float, 4> nodes{0, short_nodes_[0], short_nodes_[1], short_nodes_[2]};
+    return adding_up(1, lagrange_weights<float>(nodes, static_cast<float>(length / bins_.first)));
+  }
   const double position =
       std::min((std::log(length) - log_first_) * inverse_step_, double(bins_.nodes - 1));
   const int node = std::clamp(static_cast<int>(position) - 1, 0, bins_.nodes - 4);
   const auto t = static_cast<float>(position - node);
-  // The same at 0, 1, 2, 3, where all divisors are known.
+  // Lagrange's weights at 0, 1, 2, 3, where all divisors are known.
   const float a = t - 1, b = t - 2, c = t - 3;
-  BinWeights spread{LengthBins::before_nodes + node,
-                    {a * b * c * (-1.0f / 6), 0, t * a * c * -0.5f, t * a * b * (1.0f / 6)}};
-  auto& w = spread.weights;
-  w[1] = 1 - (w[0] + w[2] + w[3]);
-  return spread;
+  return adding_up(LengthBins::before_nodes + node,
+                   {a * b * c * (-1.0f / 6), 0, t * a * c * -0.5f, t * a * b * (1.0f / 6)});
 }
 
 }  // namespace translucube

@@ -20,7 +20,7 @@ class EnvironmentCache {
                                               EnvironmentSide side = EnvironmentSide::all);
 
  private:
-  /// Of images that are kept, in pixels (24 bytes each), the last one apart.
+  /// The most that is kept, in pixels (24 bytes each), the last one apart.
   static constexpr std::uint64_t most_pixels = std::uint64_t{1} << 23;
 
   struct Key {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "renderer/base/spectrum.h"
 #include "renderer/optics/fresnel.h"
+#include "renderer/optics/wavelengths.h"
 
 namespace translucube {
 
@@ -23,55 +23,6 @@ double solve_radius(double k, double c) {
     if (std::fabs(step) <= 1e-13 * t) break;
   }
   return t;
-}
-
-/// The wavelengths of an absorber, and the share of each in the operator from RGB to RGB.
-struct Wavelength {
-  double relative_absorption;
-  std::array<double, 9> share;
-};
-
-std::vector<Wavelength> wavelengths_of(const RgbAbsorber& absorber) {
-  const double peak = *std::max_element(absorber.relative.begin(), absorber.relative.end());
-  std::vector<Wavelength> channels(3);
-  for (int c = 0; c < 3; ++c) {
-    channels[c].relative_absorption = absorber.relative[c] / peak;
-    channels[c].share[4 * c] = 1;
-  }
-  return channels;
-}
-
-std::vector<Wavelength> wavelengths_of(const SpectralAbsorber& absorber) {
-  const std::array<const SpectrumTable*, 3> cmf{&cie_x, &cie_y, &cie_z};
-  const std::array<const SpectrumTable*, 3> basis{&basis_r, &basis_g, &basis_b};
-  double white = 0;  // luminance of the illuminant
-  for (int i = 0; i < spectrum_size; ++i) white += cie_y[i] * cie_d65[i];
-  std::vector<Wavelength> wavelengths(spectrum_size);
-  for (int i = 0; i < spectrum_size; ++i) {
-    Wavelength& w = wavelengths[i];
-    w.relative_absorption =
-        relative_absorption(absorber, first_wavelength_nm + i * wavelength_step_nm);
-    for (int row = 0; row < 3; ++row)
-      for (int c = 0; c < 3; ++c) {
-        double sensitivity = 0;
-        for (int j = 0; j < 3; ++j) sensitivity += xyz_to_rgb[row][j] * (*cmf[j])[i];
-        w.share[3 * row + c] = sensitivity * (*basis[c])[i] * cie_d65[i] / white;
-      }
-  }
-  return wavelengths;
-}
-
-/// sum over wavelengths of share x value.
-template <class Value>
-ColorOperator color_operator(const std::vector<Wavelength>& wavelengths, Value&& value) {
-  std::array<double, 9> sum{};
-  for (std::size_t i = 0; i < wavelengths.size(); ++i) {
-    const double v = value(i);
-    for (int k = 0; k < 9; ++k) sum[k] += wavelengths[i].share[k] * v;
-  }
-  ColorOperator m;
-  for (int k = 0; k < 9; ++k) m[k] = static_cast<float>(sum[k]);
-  return m;
 }
 
 }  // namespace
@@ -131,8 +82,7 @@ DipoleRadii::DipoleRadii(double reduced_sigma_s, double ior, double reach)
 DipoleColor::DipoleColor(const Absorber& absorber, double sigma_a_peak, double reduced_sigma_s,
                          double ior, double reach) {
   if (std::isinf(sigma_a_peak)) return;  // black, however dense the scatterers
-  const std::vector<Wavelength> wavelengths =
-      std::visit([](const auto& a) { return wavelengths_of(a); }, absorber);
+  const std::vector<Wavelength> wavelengths = wavelengths_of(absorber);
   std::vector<DipoleProfile> profiles;
   profiles.reserve(wavelengths.size());
   for (const Wavelength& w : wavelengths)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Slab optics of scattering layers by adding and doubling (slab_layer.h), where light paths would
+// Slab optics of scattering layers by adding and doubling (layer.h), where light paths would
 // have to be followed through too many scatterers.
 
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "renderer/slab/reading.h"
 
-namespace translucube {
+namespace translucube::slab {
 
 /// Readings at normal and at diffuse incidence.
 struct AddedReadings {
@@ -21,7 +21,7 @@ struct AddedReadings {
 ///
 /// Replicates are solved alternately with fewer and with more streams: behind smooth faces, where
 /// nothing else differs, the standard error is half of that difference.
-std::optional<AddedReadings> add_layers(const SlabBody& body, const SlabChannels& channels,
+std::optional<AddedReadings> add_layers(const Body& body, const Channels& channels,
                                         double standard_error, std::uint64_t seed, int threads);
 
-}  // namespace translucube
+}  // namespace translucube::slab

@@ -13,13 +13,15 @@
 namespace translucube {
 namespace {
 
+using namespace slab;
+
 /// Independent estimates whose spread tells the standard error.
 constexpr int replicates = 32;
 
 /// All replicates of one incidence.
 struct Trial {
   Incidence incidence;
-  std::vector<SlabTally> tallies;
+  std::vector<Tally> tallies;
   std::uint64_t histories = 0, wanted = 0;  ///< of each replicate
   Readings readings;
 
@@ -42,20 +44,20 @@ std::uint64_t next_histories(std::uint64_t histories, double error, double stand
   return std::max(histories + histories / 8 + 1, (wanted + step - 1) / step * step);
 }
 
-void trace(const SlabBody& body, std::uint64_t seed, std::vector<Trial*> trials, int threads) {
+void trace(const Body& body, std::uint64_t seed, std::vector<Trial*> trials, int threads) {
   parallel_for(threads, replicates * static_cast<int>(trials.size()), [&](int i) {
     Trial& trial = *trials[i / replicates];
     const int replicate = i % replicates;
     const std::uint64_t key = hash_combine(
         seed, 2 * std::uint64_t(replicate) + (trial.incidence == Incidence::normal ? 0 : 1));
-    walk_slab(body, trial.incidence, key, trial.histories, trial.wanted - trial.histories,
-              trial.tallies[replicate]);
+    walk(body, trial.incidence, key, trial.histories, trial.wanted - trial.histories,
+         trial.tallies[replicate]);
   });
   for (Trial* trial : trials) trial->histories = trial->wanted;
 }
 
-/// As make_interior, without the tables of the infinitely dense body: all that it reflects is
-/// known.
+/// What make_interior() makes, without the tables of the infinitely dense body: all that it
+/// reflects is known.
 AnyInterior slab_interior(const Material& material, double thickness_mm) {
   const Coefficients& c = material.coefficients;
   if (std::isinf(c.sigma_s) && !std::isinf(c.sigma_a_peak)) return LambertianInterior{};
@@ -78,16 +80,16 @@ Material with_finite_pigment(Material material, double thickness_mm) {
 }
 
 /// Both incidences by walks, until every total has the standard error.
-std::array<Trial, 2> walk(const SlabBody& body, const SlabChannels& channels, double standard_error,
-                          std::uint64_t seed, int threads) {
+std::array<Trial, 2> walk_until(const Body& body, const Channels& channels, double standard_error,
+                                std::uint64_t seed, int threads) {
   const double peak = *std::max_element(channels.sigma_a.begin(), channels.sigma_a.end());
   const bool walks = needs_walks(body);
-  SlabDeveloper developer(channels, peak);
+  Developer developer(channels, peak);
   std::array<Trial, 2> trials{Trial{Incidence::normal, {}, 0, 0, {}},
                               Trial{Incidence::diffuse, {}, 0, 0, {}}};
   for (Trial& trial : trials) {
     trial.readings.unwalked = read_unwalked(body, trial.incidence, channels);
-    trial.tallies.assign(walks ? replicates : 0, SlabTally(std::isinf(peak) ? 0 : peak));
+    trial.tallies.assign(walks ? replicates : 0, Tally(std::isinf(peak) ? 0 : peak));
     trial.wanted = walks ? first_histories(standard_error) : 0;
   }
   while (trials[0].pending() || trials[1].pending()) {
@@ -97,7 +99,7 @@ std::array<Trial, 2> walk(const SlabBody& body, const SlabChannels& channels, do
     trace(body, seed, pending, threads);
     for (Trial* trial : pending) {
       trial->readings.replicates.clear();
-      for (const SlabTally& tally : trial->tallies)
+      for (const Tally& tally : trial->tallies)
         trial->readings.replicates.push_back(
             developer.develop(tally, static_cast<double>(trial->histories)));
       const double error = largest_error_of_totals(trial->readings);
@@ -115,9 +117,9 @@ SlabAppearance slab_appearance(const Material& given, double thickness_mm, doubl
                                std::uint64_t seed, int threads) {
   const Material material = with_finite_pigment(given, thickness_mm);
   const auto start = std::chrono::steady_clock::now();
-  const SlabChannels channels = slab_channels(material, thickness_mm);
+  const Channels channels = make_channels(material, thickness_mm);
   const double least = *std::min_element(channels.sigma_a.begin(), channels.sigma_a.end());
-  const SlabBody body{make_interface(material), slab_interior(material, thickness_mm), least};
+  const Body body{make_interface(material), slab_interior(material, thickness_mm), least};
 
   SlabAppearance appearance;
   appearance.transport = transport_name(body.interior);
@@ -127,7 +129,7 @@ SlabAppearance slab_appearance(const Material& given, double thickness_mm, doubl
     appearance.samples = added->samples;
     appearance.transport = "adding-doubling";
   } else {
-    auto trials = walk(body, channels, standard_error, seed, threads);
+    auto trials = walk_until(body, channels, standard_error, seed, threads);
     for (const int i : {0, 1}) {
       appearance.samples += trials[i].histories * trials[i].tallies.size();
       at[i] = std::move(trials[i].readings);

@@ -1,7 +1,8 @@
 #pragma once
 
 // The optics of a material as a flat slab, infinite across, with its interface on both faces: what
-// instruments for plastics, glass and paint measure of it.
+// instruments for plastics, glass and paint measure of it. In this room stands all that takes,
+// walks of light, adding and doubling, closed forms, in translucube::slab; it knows no scene.
 
 #include <array>
 #include <cstdint>
@@ -13,6 +14,10 @@
 
 namespace translucube {
 
+/// Wavelength bands of equal width from 380 to 780 nm.
+inline constexpr int slab_bands = 20;
+inline constexpr double slab_band_width_nm = 20;
+
 /// The light that a slab sends one way, for white light (D65) of irradiance 1.
 struct SlabLight {
   /// Linear Rec.709 R, G, B. `direct` met no scatterer and only smooth faces: "specular" where
@@ -21,7 +26,7 @@ struct SlabLight {
   std::array<double, 3> direct{}, diffuse{}, total{};
   std::array<double, 3> xyz{};  ///< CIE 1931, 2 degrees, of the total; Y = 1: all of the light
   std::array<double, 3> lab{};  ///< CIE 1976 L*, a*, b* of the total under D65
-  /// Total by wavelength: means over bands of 20 nm from 380 to 780 nm. Empty where the absorber is
+  /// Total by wavelength: means over the slab_bands. Empty where the absorber is
   /// given by R, G, B.
   std::vector<double> bands;
 };
@@ -30,11 +35,10 @@ struct SlabOptics {
   SlabLight reflected, transmitted;
 };
 
-struct Estimate {
-  double value = 0, standard_error = 0;
-};
-
 struct SlabAppearance {
+  struct Estimate {
+    double value = 0, standard_error = 0;
+  };
   struct AtIncidence {
     SlabOptics value, standard_error;
   };
@@ -52,7 +56,7 @@ struct SlabAppearance {
   std::uint64_t samples = 0;          ///< histories over both incidences, or paths through faces
   double largest_standard_error = 0;  ///< of all totals (R, G, B)
   double seconds = 0;
-  /// "interface", "clear", "walk", "adding-doubling" (slab_adding.h) or "interfaced-lambertian"
+  /// "interface", "clear", "walk", "adding-doubling" (adding.h) or "interfaced-lambertian"
   std::string transport;
 };
 

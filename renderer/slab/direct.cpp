@@ -5,7 +5,7 @@
 #include "renderer/base/quadrature.h"
 #include "renderer/optics/fresnel.h"
 
-namespace translucube {
+namespace translucube::slab {
 
 DirectLight direct_light(double ior, double extinction, double mu) {
   const double f = fresnel(mu, ior);
@@ -34,4 +34,24 @@ DirectLight direct_light_diffuse(double ior, double extinction) {
   return sum;
 }
 
-}  // namespace translucube
+FirstScatterer sample_first_scatterer(double ior, double sigma_s, double mu_outside, double u) {
+  const double mu = std::sqrt(1 - (1 - mu_outside * mu_outside) / (ior * ior));
+  const double reflectance = fresnel(mu_outside, ior);
+  const double scattered = -std::expm1(-sigma_s / mu);
+  const double again = reflectance * (1 - scattered);
+  const double weight = (1 - reflectance) * scattered / (1 - again);
+  if (!(weight > 0)) return {};
+  // A geometric series of crossings. One number tells the crossing and, stretched, the place on it.
+  u = std::fmax(u, 0x1p-33);
+  double crossings = 0;
+  if (u < again) {
+    crossings = std::floor(std::log(u) / std::log(again));
+    u = std::fmin(1.0, u / std::pow(again, crossings));
+  }
+  u = std::fmin(1.0, std::fmax(0.0, (u - again) / (1 - again)));
+  const double path = std::fmin(1 / mu, -std::log1p(-u * scattered) / sigma_s);
+  const bool forwards = std::fmod(crossings, 2) == 0;
+  return {weight, forwards ? path * mu : 1 - path * mu, forwards ? mu : -mu, crossings / mu + path};
+}
+
+}  // namespace translucube::slab

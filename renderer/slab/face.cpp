@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "renderer/base/lagrange.h"
 #include "renderer/optics/microsurface.h"
+#include "renderer/slab/body.h"
 
-namespace translucube {
+namespace translucube::slab {
 namespace {
 
 using Eigen::MatrixXd;
@@ -14,24 +17,20 @@ using Eigen::VectorXd;
 /// Samples of either incidence for one of each stream: all of the light passes through them.
 constexpr std::uint64_t incident_samples = 16;
 
-SlabFace empty_face(int streams) {
+Face empty_face(int streams) {
   return {MatrixXd::Zero(streams, streams),
           MatrixXd::Zero(3, streams),
           MatrixXd::Zero(streams, 2),
           {0, 0}};
 }
 
-/// The row of SlabFace::leaves.
-int exit_row(double sin2) {
-  static const double core = sin2_of_degrees(core_half_angle_deg);
-  static const double ring = sin2_of_degrees(ring_half_angle_deg);
-  return sin2 < core ? 0 : sin2 < ring ? 1 : 2;
-}
+/// The row of Face::leaves.
+int exit_row(double sin2) { return static_cast<int>(cone_of(sin2)) - static_cast<int>(Exit::core); }
 
 }  // namespace
 
-SlabFace smooth_face(const SlabStreams& streams, double ior) {
-  SlabFace face = empty_face(streams.count());
+Face smooth_face(const Streams& streams, double ior) {
+  Face face = empty_face(streams.count());
   for (int i = 0; i < streams.trapped; ++i) face.reflects(i, i) = 1;
   for (int i = streams.trapped; i < streams.count(); ++i) {
     const double mu = streams.mu_outside[i - streams.trapped], reflectance = fresnel(mu, ior);
@@ -46,7 +45,7 @@ SlabFace smooth_face(const SlabStreams& streams, double ior) {
   return face;
 }
 
-RoughFaceSampler::RoughFaceSampler(const SlabStreams& streams, const RoughInterface& interface,
+RoughFaceSampler::RoughFaceSampler(const Streams& streams, const RoughInterface& interface,
                                    std::uint64_t key)
     : streams_(&streams), interface_(interface), key_(key), sums_(empty_face(streams.count())) {}
 
@@ -72,16 +71,14 @@ PathSampler sampler_of(std::uint64_t key, int what, std::uint64_t index) {
 
 Vec3 direction(double mu) { return {std::sqrt(std::fmax(0.0, 1 - mu * mu)), 0, mu}; }
 
-constexpr auto no_connection = [](const MicroVertex&) {};
-
 }  // namespace
 
 void RoughFaceSampler::sample_stream(int from, std::uint64_t first, std::uint64_t last) {
   const double ior = interface_.ior;
   for (std::uint64_t i = first; i < last; ++i) {
     PathSampler sampler = sampler_of(key_, 2 + from, i);
-    cross_microsurface(interface_, 1 / ior, direction(streams_->mu[from]), sampler, no_connection,
-                       [&](Vec3 wi, double weight, double) {
+    cross_microsurface(interface_, 1 / ior, direction(streams_->mu[from]), sampler,
+                       [&](Vec3 wi, double weight) {
                          if (wi.z > 0)
                            add_inside(sums_.reflects.col(from), wi.z, weight);
                          else
@@ -95,7 +92,7 @@ void RoughFaceSampler::sample_incidence(int incidence, std::uint64_t first, std:
     PathSampler sampler = sampler_of(key_, incidence, i);
     const double u = sampler.next2().u;
     cross_microsurface(interface_, interface_.ior, direction(incidence == 0 ? 1 : std::sqrt(1 - u)),
-                       sampler, no_connection, [&](Vec3 wi, double weight, double) {
+                       sampler, [&](Vec3 wi, double weight) {
                          if (wi.z > 0)
                            sums_.reflected[incidence] += weight;
                          else
@@ -116,16 +113,13 @@ void RoughFaceSampler::add_inside(Eigen::Ref<VectorXd> shares, double mu, double
   const int count = streams_->ring();
   const int above = static_cast<int>(std::upper_bound(nodes, nodes + count, mu) - nodes);
   const int first = std::clamp(above - 2, 0, count - 4);
-  for (int i = first; i < first + 4; ++i) {
-    double share = weight;
-    for (int j = first; j < first + 4; ++j)
-      if (j != i) share *= (mu - nodes[j]) / (nodes[i] - nodes[j]);
-    shares[i] += share;
-  }
+  const std::span<const double, 4> nearest(nodes + first, 4);
+  const std::array<double, 4> nearest_shares = lagrange_weights(nearest, mu, weight);
+  for (int i = 0; i < 4; ++i) shares[first + i] += nearest_shares[i];
 }
 
-SlabFace RoughFaceSampler::face() const {
-  SlabFace face = sums_;
+Face RoughFaceSampler::face() const {
+  Face face = sums_;
   // Roulette keeps energy on the average alone: with columns that sum to 1 every estimate does.
   const bool lossless = interface_.multiple_scattering;
   for (int from = 0; from < streams_->count(); ++from) {
@@ -143,4 +137,4 @@ SlabFace RoughFaceSampler::face() const {
   return face;
 }
 
-}  // namespace translucube
+}  // namespace translucube::slab

@@ -1,12 +1,13 @@
 #include "renderer/slab/layer.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 
 #include "renderer/base/quadrature.h"
-#include "renderer/slab/walk.h"
+#include "renderer/slab/body.h"
 
-namespace translucube {
+namespace translucube::slab {
 namespace {
 
 using Eigen::MatrixXd;
@@ -51,11 +52,11 @@ void normalize(const VectorXd& weight, MatrixXd& keeps, MatrixXd& turns) {
 
 }  // namespace
 
-SlabStreams slab_streams(double ior, int points) {
+Streams make_streams(double ior, int points) {
   const Quadrature rule = gauss_legendre(points);
   const double critical = std::sqrt(1 - 1 / (ior * ior));
   std::vector<double> mu, weight;
-  SlabStreams streams;
+  Streams streams;
   if (ior > 1)
     for (int i = 0; i < points; ++i) {
       mu.push_back(critical * rule.x[i]);
@@ -79,9 +80,9 @@ SlabStreams slab_streams(double ior, int points) {
   return streams;
 }
 
-double SlabLayers::straight_share(double g, int points) { return std::pow(g, moments(points)); }
+double Layers::straight_share(double g, int points) { return std::pow(g, moments(points)); }
 
-SlabLayers::SlabLayers(const SlabStreams& streams, const Medium& medium, double first_depth)
+Layers::Layers(const Streams& streams, const Medium& medium, double first_depth)
     : inverse_mu_(streams.mu.cwiseInverse()), first_depth_(first_depth) {
   const int points = static_cast<int>(streams.mu_outside.size()) - 2;
   const double transport = medium.sigma_s * (1 - medium.g);
@@ -93,7 +94,7 @@ SlabLayers::SlabLayers(const SlabStreams& streams, const Medium& medium, double 
     *matrix = (0.5 * sigma_s_ * streams.weight).asDiagonal() * *matrix * inverse_mu_.asDiagonal();
 }
 
-SlabLayer SlabLayers::layer(double sigma_a) const {
+Layer Layers::layer(double sigma_a) const {
   const double absorption = sigma_a * limit_scale_, extinction = sigma_s_ + absorption;
   int doublings = 0;
   double depth = 1;
@@ -104,8 +105,8 @@ SlabLayer SlabLayers::layer(double sigma_a) const {
   const MatrixXd loss = MatrixXd((extinction * inverse_mu_).asDiagonal()) - forward_;
   const MatrixXd half_even = 0.5 * depth * (loss - backward_);
   const MatrixXd half_odd = 0.5 * depth * (loss + backward_);
-  SlabLayer layer{(identity + half_even).partialPivLu().solve(identity - half_even),
-                  -(identity + half_odd).partialPivLu().solve(identity - half_odd)};
+  Layer layer{(identity + half_even).partialPivLu().solve(identity - half_even),
+              -(identity + half_odd).partialPivLu().solve(identity - half_odd)};
   for (int i = 0; i < doublings; ++i) {
     // By symmetry the light in the middle of two layers is even, or odd, itself.
     const MatrixXd reflected = 0.5 * (layer.even + layer.odd);
@@ -119,4 +120,4 @@ SlabLayer SlabLayers::layer(double sigma_a) const {
   return layer;
 }
 
-}  // namespace translucube
+}  // namespace translucube::slab

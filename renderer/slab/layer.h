@@ -9,18 +9,18 @@
 // Streams carry flux, not radiance: operators act on shares of the light, and those of a layer that
 // does not absorb have columns that sum to 1.
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 #include "renderer/optics/medium.h"
 
-namespace translucube {
+namespace translucube::slab {
 
 /// Cosines of the angles to the normal inside the slab and the measures d(mu) that they stand for.
 /// In this order: trapped behind a smooth face (Gauss and Legendre's rule in mu), open (the same
 /// rule in the cosine outside, in which Fresnel's equations are smooth), the ring and the core of
-/// SlabExit.
-struct SlabStreams {
+/// Exit.
+struct Streams {
   Eigen::VectorXd mu, weight;
   std::vector<double> mu_outside, weight_outside;  ///< of all but the trapped streams
   int trapped = 0;
@@ -31,24 +31,24 @@ struct SlabStreams {
 };
 
 /// `points` on either side of the critical angle.
-SlabStreams slab_streams(double ior, int points);
+Streams make_streams(double ior, int points);
 
 /// What a layer sends back to either side where both sides send it the same light (even), or the
 /// opposite (odd): reflection plus and minus transmission.
-struct SlabLayer {
+struct Layer {
   Eigen::MatrixXd even, odd;
 };
 
 /// The layers of one medium, for any absorption. Scattering that no stream resolves counts as
 /// straight on (Wiscombe 1977, "The delta-M method").
-class SlabLayers {
+class Layers {
  public:
   /// `medium` in 1 / thickness. `first_depth`: optical depth of the layer that is doubled, or less;
   /// its error is of second order in it.
-  SlabLayers(const SlabStreams& streams, const Medium& medium, double first_depth);
+  Layers(const Streams& streams, const Medium& medium, double first_depth);
 
   /// `sigma_a` [1 / thickness], finite.
-  SlabLayer layer(double sigma_a) const;
+  Layer layer(double sigma_a) const;
 
   /// Share of scattered light that counts as straight on.
   static double straight_share(double g, int points);
@@ -59,4 +59,4 @@ class SlabLayers {
   double sigma_s_, limit_scale_ = 1, first_depth_;
 };
 
-}  // namespace translucube
+}  // namespace translucube::slab

@@ -7,26 +7,40 @@
 #include "renderer/slab/direct.h"
 
 namespace translucube {
+
+std::array<double, 3> cielab(const std::array<double, 3>& xyz, const std::array<double, 3>& white) {
+  std::array<double, 3> f;
+  for (int i = 0; i < 3; ++i) {
+    constexpr double knee = 6.0 / 29;
+    const double t = xyz[i] / white[i];
+    f[i] = t > knee * knee * knee ? std::cbrt(t) : t / (3 * knee * knee) + 4.0 / 29;
+  }
+  return {116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])};
+}
+
+}  // namespace translucube
+
+namespace translucube::slab {
 namespace {
 
 template <class Change>
-void for_each_part(SlabRead& a, const SlabRead& b, Change&& change) {
+void for_each_part(Reading& a, const Reading& b, Change&& change) {
   const auto merge = [&](std::vector<double>& x, const std::vector<double>& y) {
     for (std::size_t i = 0; i < x.size(); ++i) change(x[i], y[i]);
   };
   merge(a.specular, b.specular);
   merge(a.regular, b.regular);
-  for (int exit = 0; exit < slab_exits; ++exit) merge(a.diffuse[exit], b.diffuse[exit]);
+  for (int exit = 0; exit < exit_count; ++exit) merge(a.diffuse[exit], b.diffuse[exit]);
 }
 
 /// a + factor * b
-SlabRead plus(SlabRead a, const SlabRead& b, double factor) {
+Reading plus(Reading a, const Reading& b, double factor) {
   for_each_part(a, b, [&](double& x, double y) { x += factor * y; });
   return a;
 }
 
-SlabRead empty_read(std::size_t readouts) {
-  SlabRead read;
+Reading empty_read(std::size_t readouts) {
+  Reading read;
   read.specular.assign(readouts, 0);
   read.regular.assign(readouts, 0);
   for (std::vector<double>& diffuse : read.diffuse) diffuse.assign(readouts, 0);
@@ -34,23 +48,23 @@ SlabRead empty_read(std::size_t readouts) {
 }
 
 /// All the light, by the mean of the replicates.
-SlabRead mean(const Readings& readings) {
-  SlabRead sum = readings.unwalked;
-  for (const SlabRead& replicate : readings.replicates)
+Reading mean(const Readings& readings) {
+  Reading sum = readings.unwalked;
+  for (const Reading& replicate : readings.replicates)
     sum = plus(std::move(sum), replicate, 1.0 / static_cast<double>(readings.replicates.size()));
   return sum;
 }
 
 /// What `of` makes of the mean without one replicate, for each.
 template <class Of>
-auto leave_one_out(const Readings& readings, const SlabRead& whole, Of&& of) {
+auto leave_one_out(const Readings& readings, const Reading& whole, Of&& of) {
   std::vector<decltype(of(whole))> values;
   const double n = static_cast<double>(readings.replicates.size());
-  for (const SlabRead& replicate : readings.replicates) {
+  for (const Reading& replicate : readings.replicates) {
     // unwalked + (n m - r) / (n - 1), with m = whole - unwalked
-    SlabRead rest = plus(whole, readings.unwalked, -1);
+    Reading rest = plus(whole, readings.unwalked, -1);
     rest = plus(std::move(rest), replicate, -1 / n);
-    const SlabRead scaled = std::move(rest);
+    const Reading scaled = std::move(rest);
     values.push_back(of(plus(readings.unwalked, scaled, n / (n - 1))));
   }
   return values;
@@ -89,12 +103,12 @@ SlabLight light_of(const std::vector<double>& direct, const std::vector<double>&
   return light;
 }
 
-SlabOptics optics_of(const SlabRead& read) {
-  const auto at = [&](SlabExit exit) { return read.diffuse[static_cast<int>(exit)]; };
-  std::vector<double> transmitted = at(SlabExit::core);
-  for (const SlabExit exit : {SlabExit::ring, SlabExit::wide})
+SlabOptics optics_of(const Reading& read) {
+  const auto at = [&](Exit exit) { return read.diffuse[static_cast<int>(exit)]; };
+  std::vector<double> transmitted = at(Exit::core);
+  for (const Exit exit : {Exit::ring, Exit::wide})
     for (std::size_t i = 0; i < transmitted.size(); ++i) transmitted[i] += at(exit)[i];
-  return {light_of(read.specular, at(SlabExit::reflected)), light_of(read.regular, transmitted)};
+  return {light_of(read.specular, at(Exit::reflected)), light_of(read.regular, transmitted)};
 }
 
 /// Calls `visit` for every number of a light, in a fixed order.
@@ -109,8 +123,8 @@ void visit_numbers(Light& optics, Visit&& visit) {
 
 /// A ratio and its error; empty where it is not defined for every set of replicates.
 template <class Ratio>
-std::optional<Estimate> estimate_ratio(const Readings& readings, Ratio&& ratio) {
-  const SlabRead whole = mean(readings);
+std::optional<SlabAppearance::Estimate> estimate_ratio(const Readings& readings, Ratio&& ratio) {
+  const Reading whole = mean(readings);
   std::vector<double> values;
   for (const std::optional<double>& v : leave_one_out(readings, whole, ratio)) {
     if (!v) return std::nullopt;
@@ -118,23 +132,13 @@ std::optional<Estimate> estimate_ratio(const Readings& readings, Ratio&& ratio) 
   }
   const std::optional<double> value = ratio(whole);
   if (!value) return std::nullopt;
-  return Estimate{*value, jackknife(values)};
+  return SlabAppearance::Estimate{*value, jackknife(values)};
 }
 
 }  // namespace
 
-std::array<double, 3> cielab(const std::array<double, 3>& xyz, const std::array<double, 3>& white) {
-  std::array<double, 3> f;
-  for (int i = 0; i < 3; ++i) {
-    constexpr double knee = 6.0 / 29;
-    const double t = xyz[i] / white[i];
-    f[i] = t > knee * knee * knee ? std::cbrt(t) : t / (3 * knee * knee) + 4.0 / 29;
-  }
-  return {116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])};
-}
-
-SlabRead read_unwalked(const SlabBody& body, Incidence incidence, const SlabChannels& channels) {
-  SlabRead read = empty_read(channels.readouts.size());
+Reading read_unwalked(const Body& body, Incidence incidence, const Channels& channels) {
+  Reading read = empty_read(channels.readouts.size());
   const bool dense = std::holds_alternative<LambertianInterior>(body.interior);
   const bool black = std::holds_alternative<BlackInterior>(body.interior);
   if (const auto* smooth = std::get_if<SmoothInterface>(&body.interface)) {
@@ -154,27 +158,27 @@ SlabRead read_unwalked(const SlabBody& body, Incidence incidence, const SlabChan
   }
   // The infinitely dense body sends everything back that crosses its interface.
   if (dense) {
-    std::vector<double>& diffuse = read.diffuse[static_cast<int>(SlabExit::reflected)];
+    std::vector<double>& diffuse = read.diffuse[static_cast<int>(Exit::reflected)];
     for (std::size_t i = 0; i < diffuse.size(); ++i) diffuse[i] = 1 - read.specular[i];
   }
   return read;
 }
 
-SlabDeveloper::SlabDeveloper(const SlabChannels& channels, double sigma_a_peak)
+Developer::Developer(const Channels& channels, double sigma_a_peak)
     : channels_(channels), sigma_a_peak_(sigma_a_peak) {}
 
-SlabRead SlabDeveloper::develop(const SlabTally& tally, double histories) {
+Reading Developer::develop(const Tally& tally, double histories) {
   while (table_.size() < tally.used()) {
     // A single node holds light of all lengths of a body that absorbs none of it.
-    const double depth = SlabTally::depth_at(table_.size());
+    const double depth = Tally::depth_at(table_.size());
     std::vector<double> transmitted;
     for (const double sigma_a : channels_.sigma_a)
       transmitted.push_back(depth == 0 ? 1 : std::exp(-sigma_a / sigma_a_peak_ * depth));
     table_.push_back(channels_.read(transmitted));
   }
-  SlabRead read = empty_read(channels_.readouts.size());
-  for (int exit = 0; exit < slab_exits; ++exit) {
-    const std::vector<double>& weights = tally.weights(static_cast<SlabExit>(exit));
+  Reading read = empty_read(channels_.readouts.size());
+  for (int exit = 0; exit < exit_count; ++exit) {
+    const std::vector<double>& weights = tally.weights(static_cast<Exit>(exit));
     for (std::size_t node = 0; node < tally.used(); ++node) {
       if (weights[node] == 0) continue;
       const double weight = weights[node] / histories;
@@ -186,11 +190,11 @@ SlabRead SlabDeveloper::develop(const SlabTally& tally, double histories) {
 }
 
 SlabAppearance::AtIncidence optics_of(const Readings& readings) {
-  const SlabRead whole = mean(readings);
+  const Reading whole = mean(readings);
   SlabAppearance::AtIncidence at{optics_of(whole), optics_of(whole)};
   std::vector<std::vector<double>> values;  // of every number, without each of the replicates
   for (const SlabOptics& optics :
-       leave_one_out(readings, whole, [](const SlabRead& read) { return optics_of(read); })) {
+       leave_one_out(readings, whole, [](const Reading& read) { return optics_of(read); })) {
     std::size_t i = 0;
     visit_numbers(optics, [&](double number) {
       if (i == values.size()) values.emplace_back();
@@ -203,20 +207,20 @@ SlabAppearance::AtIncidence optics_of(const Readings& readings) {
   return at;
 }
 
-std::optional<Estimate> haze_of(const Readings& readings) {
-  return estimate_ratio(readings, [](const SlabRead& read) -> std::optional<double> {
+std::optional<SlabAppearance::Estimate> haze_of(const Readings& readings) {
+  return estimate_ratio(readings, [](const Reading& read) -> std::optional<double> {
     const SlabOptics optics = optics_of(read);
     const double total = optics.transmitted.xyz[1];
     if (!(total > 0)) return std::nullopt;
-    return luminance_of(read.diffuse[static_cast<int>(SlabExit::wide)]) / total;
+    return luminance_of(read.diffuse[static_cast<int>(Exit::wide)]) / total;
   });
 }
 
-std::optional<Estimate> clarity_of(const Readings& readings) {
-  return estimate_ratio(readings, [](const SlabRead& read) -> std::optional<double> {
+std::optional<SlabAppearance::Estimate> clarity_of(const Readings& readings) {
+  return estimate_ratio(readings, [](const Reading& read) -> std::optional<double> {
     const double core =
-        luminance_of(read.regular) + luminance_of(read.diffuse[static_cast<int>(SlabExit::core)]);
-    const double ring = luminance_of(read.diffuse[static_cast<int>(SlabExit::ring)]);
+        luminance_of(read.regular) + luminance_of(read.diffuse[static_cast<int>(Exit::core)]);
+    const double ring = luminance_of(read.diffuse[static_cast<int>(Exit::ring)]);
     if (!(core + ring > 0)) return std::nullopt;
     return (core - ring) / (core + ring);
   });
@@ -233,4 +237,4 @@ double largest_error_of_totals(const Readings& readings) {
   return largest;
 }
 
-}  // namespace translucube
+}  // namespace translucube::slab

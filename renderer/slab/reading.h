@@ -8,43 +8,44 @@
 #include <vector>
 
 #include "renderer/slab/appearance.h"
+#include "renderer/slab/body.h"
 #include "renderer/slab/spectral.h"
-#include "renderer/slab/walk.h"
+#include "renderer/slab/tally.h"
 
-namespace translucube {
+namespace translucube::slab {
 
-/// Readouts (SlabChannels) of the light at one incidence, apart by where and how it leaves.
-struct SlabRead {
+/// Readouts (Channels) of the light at one incidence, apart by where and how it leaves.
+struct Reading {
   std::vector<double> specular, regular;                ///< no scatterer met, smooth faces
-  std::array<std::vector<double>, slab_exits> diffuse;  ///< by SlabExit
+  std::array<std::vector<double>, exit_count> diffuse;  ///< by Exit
 };
 
 struct Readings {
-  SlabRead unwalked;                 ///< known in closed form
-  std::vector<SlabRead> replicates;  ///< independent estimates of the rest; none, or at least two
+  Reading unwalked;                 ///< known in closed form
+  std::vector<Reading> replicates;  ///< independent estimates of the rest; none, or at least two
 };
 
 /// What needs no walk: light through smooth faces, and what the infinitely dense body sends back.
-SlabRead read_unwalked(const SlabBody& body, Incidence incidence, const SlabChannels& channels);
+Reading read_unwalked(const Body& body, Incidence incidence, const Channels& channels);
 
 /// Develops the absorber of a tally.
-class SlabDeveloper {
+class Developer {
  public:
-  SlabDeveloper(const SlabChannels& channels, double sigma_a_peak);
+  Developer(const Channels& channels, double sigma_a_peak);
 
-  /// For so many histories of weight 1.
-  SlabRead develop(const SlabTally& tally, double histories);
+  /// The reading of a tally of so many histories of weight 1.
+  Reading develop(const Tally& tally, double histories);
 
  private:
-  const SlabChannels& channels_;
+  const Channels& channels_;
   double sigma_a_peak_;
   std::vector<std::vector<double>> table_;  ///< for each node, the readouts of light of its length
 };
 
 SlabAppearance::AtIncidence optics_of(const Readings& readings);
-std::optional<Estimate> haze_of(const Readings& readings);
-std::optional<Estimate> clarity_of(const Readings& readings);
-/// Over R, G, B of reflectance and transmittance.
+std::optional<SlabAppearance::Estimate> haze_of(const Readings& readings);
+std::optional<SlabAppearance::Estimate> clarity_of(const Readings& readings);
+/// The largest standard error of R, G, B of reflectance and transmittance.
 double largest_error_of_totals(const Readings& readings);
 
-}  // namespace translucube
+}  // namespace translucube::slab

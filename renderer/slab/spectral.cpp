@@ -4,19 +4,19 @@
 #include <cmath>
 
 #include "renderer/base/spectrum.h"
-#include "renderer/film/absorption.h"
+#include "renderer/slab/appearance.h"
 
-namespace translucube {
+namespace translucube::slab {
 namespace {
 
-SlabChannels grey(double sigma_a) {
+Channels grey(double sigma_a) {
   return {{sigma_a}, std::vector<std::vector<double>>(3 + slab_bands, {1.0})};
 }
 
-SlabChannels channels_of(const RgbAbsorber& absorber, double peak) {
+Channels channels_of(const RgbAbsorber& absorber, double peak) {
   const auto& relative = absorber.relative;
   const double largest = *std::max_element(relative.begin(), relative.end());
-  SlabChannels channels;
+  Channels channels;
   for (int c = 0; c < 3; ++c) {
     channels.sigma_a.push_back(peak * relative[c] / largest);
     channels.readouts.push_back({0, 0, 0});
@@ -25,19 +25,14 @@ SlabChannels channels_of(const RgbAbsorber& absorber, double peak) {
   return channels;
 }
 
-SlabChannels channels_of(const SpectralAbsorber& absorber, double peak) {
-  SlabChannels channels;
+Channels channels_of(const SpectralAbsorber& absorber, double peak) {
+  Channels channels;
   channels.readouts.assign(3 + slab_bands, std::vector<double>(spectrum_size, 0));
-  double white = 0;
-  for (int i = 0; i < spectrum_size; ++i) white += cie_y[i] * cie_d65[i];
   constexpr int steps = static_cast<int>(slab_band_width_nm / wavelength_step_nm);
   for (int i = 0; i < spectrum_size; ++i) {
-    const double wavelength_nm = first_wavelength_nm + i * wavelength_step_nm;
-    channels.sigma_a.push_back(peak * relative_absorption(absorber, wavelength_nm));
-    const double xyz[3] = {cie_x[i], cie_y[i], cie_z[i]};
-    for (int row = 0; row < 3; ++row)
-      for (int j = 0; j < 3; ++j)
-        channels.readouts[row][i] += xyz_to_rgb[row][j] * xyz[j] * cie_d65[i] / white;
+    channels.sigma_a.push_back(peak * relative_absorption(absorber, wavelength_nm(i)));
+    const std::array<double, 3> rgb = rgb_of_d65(i);
+    for (int row = 0; row < 3; ++row) channels.readouts[row][i] = rgb[row];
   }
   for (int band = 0; band < slab_bands; ++band)  // the trapezoid rule
     for (int i = 0; i <= steps; ++i)
@@ -47,7 +42,7 @@ SlabChannels channels_of(const SpectralAbsorber& absorber, double peak) {
 
 }  // namespace
 
-std::vector<double> SlabChannels::read(const std::vector<double>& of_channels) const {
+std::vector<double> Channels::read(const std::vector<double>& of_channels) const {
   std::vector<double> values;
   for (const std::vector<double>& row : readouts) {
     double sum = 0;
@@ -57,7 +52,7 @@ std::vector<double> SlabChannels::read(const std::vector<double>& of_channels) c
   return values;
 }
 
-SlabChannels slab_channels(const Material& material, double thickness_mm) {
+Channels make_channels(const Material& material, double thickness_mm) {
   const Coefficients& c = material.coefficients;
   const double peak = c.sigma_a_peak * thickness_mm;
   if (std::isinf(peak)) return grey(peak);
@@ -66,4 +61,4 @@ SlabChannels slab_channels(const Material& material, double thickness_mm) {
                     material.absorber);
 }
 
-}  // namespace translucube
+}  // namespace translucube::slab

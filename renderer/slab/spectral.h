@@ -6,25 +6,21 @@
 
 #include "renderer/optics/material.h"
 
-namespace translucube {
+namespace translucube::slab {
 
-/// Bands of equal width from 380 to 780 nm.
-inline constexpr int slab_bands = 20;
-inline constexpr double slab_band_width_nm = 20;
-
-struct SlabChannels {
+struct Channels {
   std::vector<double> sigma_a;  ///< of each channel, in 1 / thickness; may be infinite
   /// Rows over the channels: linear Rec.709 R, G, B of white D65 light, then the means over the
   /// bands (none for an absorber that is given by R, G, B: it has no spectrum).
   std::vector<std::vector<double>> readouts;
 
   std::size_t size() const { return sigma_a.size(); }
-  bool has_bands() const { return readouts.size() > 3; }
   /// All readouts of a quantity that is known for each channel.
   std::vector<double> read(const std::vector<double>& of_channels) const;
 };
 
-/// Bodies that light does not enter, or that absorb nothing, have a single grey channel.
-SlabChannels slab_channels(const Material& material, double thickness_mm);
+/// The channels of a slab. Bodies that light does not enter, or that absorb nothing, have a single
+/// grey channel.
+Channels make_channels(const Material& material, double thickness_mm);
 
-}  // namespace translucube
+}  // namespace translucube::slab

@@ -5,10 +5,11 @@
 #include <numbers>
 #include <type_traits>
 
-#include "renderer/optics/ball_tables.h"
 #include "renderer/optics/microsurface.h"
+#include "renderer/slab/direct.h"
+#include "renderer/slab/jump.h"
 
-namespace translucube {
+namespace translucube::slab {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -18,31 +19,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// every history: the error of R is no larger than that of T and of what is absorbed.
 constexpr double least_split = 1.0 / 2, least_split_of_microfacets = 1.0 / 2;
 
-/// Deeper than this below both faces, in transport mean free paths, light crosses many of them in
-/// one step, and comes no nearer to a face than `jump_margin` on its way.
-constexpr double jump_depth = 16, jump_margin = 4;
-/// Milne's problem: light leaves a thick medium as from `milne_length` transport mean free paths
-/// behind its face, which is the mean cosine of its flux; the density mu (milne_slope + mu) has
-/// that mean and follows Chandrasekhar's H (1960, section 16) within a few percent.
-constexpr double milne_slope = 0.6036;
-
-const double core_sin2 = sin2_of_degrees(core_half_angle_deg);
-const double ring_sin2 = sin2_of_degrees(ring_half_angle_deg);
-
-/// Time at which a Brownian motion of variance 2 t first leaves [-1, 1] from its centre. Its
-/// Laplace transform 1 / cosh(sqrt s) is a product over exponential times of means
-/// 4 / (pi (2k + 1))^2 (Biane, Pitman, Yor 2001, "Probability laws related to the Jacobi theta and
-/// Riemann zeta functions", table 1); those past the sixth add their mean.
-double sample_exit_time(Rng& rng) {
-  double time = 0, left = 0.5;
-  for (int k = 0; k < 6; ++k) {
-    const double root = 2 / (std::numbers::pi * (2 * k + 1)), mean = root * root;
-    time -= mean * std::log(rng.uniform_positive());
-    left -= mean;
-  }
-  return time + left;
-}
-
 template <class Interface, class Interior>
 class Walk {
   static constexpr bool smooth = Interface::smooth;
@@ -50,8 +26,8 @@ class Walk {
   static constexpr bool open = Interior::facts.open;
 
  public:
-  Walk(const SlabBody& body, const Interface& interface, const Interior& interior,
-       Incidence incidence, bool jumps, SlabTally& tally)
+  Walk(const Body& body, const Interface& interface, const Interior& interior, Incidence incidence,
+       bool jumps, Tally& tally)
       : interface_(interface), interior_(interior), incidence_(incidence), tally_(tally) {
     half_length_ = std::numbers::ln2 / body.least_sigma_a;
     const double sin_critical2 = 1 / (interface.ior * interface.ior);
@@ -85,30 +61,15 @@ class Walk {
  private:
   // ---- inside
 
-  /// To the first scatterer that light meets behind a smooth face, whichever of the faces it met
-  /// before: a geometric series of crossings.
-  bool scatter_first(double mu_outside, double u) {
-    const double sigma_s = interior_.medium.sigma_s;
-    const double ior = interface_.ior;
-    const double mu = std::sqrt(1 - (1 - mu_outside * mu_outside) / (ior * ior));
-    const double reflectance = fresnel(mu_outside, ior);
-    const double scattered = -std::expm1(-sigma_s / mu);
-    const double again = reflectance * (1 - scattered);
-    weight_ = (1 - reflectance) * scattered / (1 - again);
-    if (!(weight_ > 0)) return false;
-    // One number tells the crossing and, stretched, the place on it.
-    u = std::fmax(u, 0x1p-33);
-    double crossings = 0;
-    if (u < again) {
-      crossings = std::floor(std::log(u) / std::log(again));
-      u = std::fmin(1.0, u / std::pow(again, crossings));
-    }
-    u = std::fmin(1.0, std::fmax(0.0, (u - again) / (1 - again)));
-    const double path = std::fmin(1 / mu, -std::log1p(-u * scattered) / sigma_s);
-    const bool forwards = std::fmod(crossings, 2) == 0;
-    z_ = forwards ? path * mu : 1 - path * mu;
-    mu_ = forwards ? mu : -mu;
-    length_ = crossings / mu + path;
+  /// Moves to the first scatterer, by whichever of the crossings; false if light meets none.
+  bool scatter_first(double mu, double u) {
+    const FirstScatterer first =
+        sample_first_scatterer(interface_.ior, interior_.medium.sigma_s, mu, u);
+    if (!(first.weight > 0)) return false;
+    weight_ = first.weight;
+    z_ = first.z;
+    mu_ = first.mu;
+    length_ = first.length;
     const Sample2 turn = sampler_.next2();
     scatter(turn.u, std::cos(2 * std::numbers::pi * turn.v));
     return true;
@@ -157,8 +118,8 @@ class Walk {
     mu_ = std::fmin(1.0, std::fmax(-1.0, mu_));
   }
 
-  /// Of an azimuth, without a cosine: that of twice the angle of a point in the unit disc (von
-  /// Neumann 1951).
+  /// The cosine of a random azimuth, without taking one: that of twice the angle of a point in the
+  /// unit disc (von Neumann 1951).
   static double sample_cos_phi(Rng& rng) {
     while (true) {
       const Sample2 u = rng.uniform2();
@@ -167,7 +128,7 @@ class Walk {
     }
   }
 
-  /// Mirrored at the faces, back into the slab.
+  /// Mirrors the path at the faces, back into the slab.
   void fold() {
     const double whole = std::floor(z_);
     z_ -= whole;
@@ -177,23 +138,11 @@ class Walk {
     }
   }
 
-  /// Many mean free paths at once, from a scatterer to the border of a layer around it. Either
-  /// border is as likely, so that energy keeps exactly what a walk keeps; lengths are those of
-  /// diffusion to the borders' extrapolated places. z + mu l* is a walk's martingale: the layer's
-  /// centre lies g mu l* ahead of the scatterer.
   void jump() {
-    Rng& rng = sampler_.rng();
-    const double l = transport_length_;
-    z_ += interior_.medium.g * mu_ * l;
-    const double half = std::fmin(z_, 1 - z_) - jump_margin * l;
-    const double extrapolated = half + milne_length * l;
-    length_ += 3 * extrapolated * extrapolated / l * sample_exit_time(rng);
-    constexpr double linear = milne_slope / 2 / (milne_slope / 2 + 1.0 / 3);
-    const Sample2 u = rng.uniform2();
-    const double cosine = u.u < linear ? std::sqrt(u.v) : std::cbrt(u.v);
-    const double side = rng.uniform() < 0.5 ? -1 : 1;
-    z_ += side * half;
-    mu_ = side * cosine;
+    const Jump jump = sample_jump(z_, mu_, interior_.medium.g, transport_length_, sampler_.rng());
+    z_ = jump.z;
+    mu_ = jump.mu;
+    length_ += jump.length;
   }
 
   // ---- faces
@@ -213,9 +162,9 @@ class Walk {
     return false;
   }
 
-  /// From microfacet to microfacet: what escapes outwards is sent out, and one of the rays that
-  /// escape into the slab stands for all of them (a reservoir of one: Chao 1982); false if there is
-  /// none.
+  /// Light goes from microfacet to microfacet: what escapes outwards is sent out, and one of the
+  /// rays that escape into the slab stands for all of them (a reservoir of one: Chao 1982); false
+  /// if there is none.
   bool cross_rough(double mu, double eta, bool from_outside, double u) {
     if (!(mu > 0)) return false;  // along the face: no light crosses it
     const double arriving = weight_;
@@ -260,12 +209,8 @@ class Walk {
   }
 
   void leave(double weight, double sin2) {
-    SlabExit exit = SlabExit::wide;
-    if (z_ == 0)
-      exit = SlabExit::reflected;
-    else if (incidence_ == Incidence::normal && sin2 < ring_sin2)
-      exit = sin2 < core_sin2 ? SlabExit::core : SlabExit::ring;
-    tally_.add(exit, weight, length_);
+    const Exit far_side = incidence_ == Incidence::normal ? cone_of(sin2) : Exit::wide;
+    tally_.add(z_ == 0 ? Exit::reflected : far_side, weight, length_);
   }
 
   /// Russian roulette: past every length that halves even the least absorbed channel, half of the
@@ -283,15 +228,15 @@ class Walk {
   const Interface& interface_;
   const Interior& interior_;
   Incidence incidence_;
-  SlabTally& tally_;
+  Tally& tally_;
   double half_length_, trapped_mu2_, transport_length_ = 0, jump_depth_ = infinity;
 
   PathSampler sampler_;
   double z_ = 0, mu_ = 0, length_ = 0, weight_ = 0, floor_ = 0, next_roulette_ = 0;
 };
 
-void walk_slab(const SlabBody& body, Incidence incidence, std::uint64_t key, std::uint64_t first,
-               std::uint64_t count, bool jumps, SlabTally& tally) {
+void walk(const Body& body, Incidence incidence, std::uint64_t key, std::uint64_t first,
+          std::uint64_t count, bool jumps, Tally& tally) {
   std::visit(
       [&](const auto& interface, const auto& interior) {
         using Interface = std::decay_t<decltype(interface)>;
@@ -310,20 +255,20 @@ void walk_slab(const SlabBody& body, Incidence incidence, std::uint64_t key, std
 
 }  // namespace
 
-bool needs_walks(const SlabBody& body) {
+bool needs_walks(const Body& body) {
   if (std::holds_alternative<ScatteringInterior>(body.interior)) return true;
   return std::holds_alternative<RoughInterface>(body.interface) &&
          !std::holds_alternative<LambertianInterior>(body.interior);
 }
 
-void walk_slab(const SlabBody& body, Incidence incidence, std::uint64_t key, std::uint64_t first,
-               std::uint64_t count, SlabTally& tally) {
-  walk_slab(body, incidence, key, first, count, true, tally);
+void walk(const Body& body, Incidence incidence, std::uint64_t key, std::uint64_t first,
+          std::uint64_t count, Tally& tally) {
+  walk(body, incidence, key, first, count, true, tally);
 }
 
-void walk_slab_analog(const SlabBody& body, Incidence incidence, std::uint64_t key,
-                      std::uint64_t first, std::uint64_t count, SlabTally& tally) {
-  walk_slab(body, incidence, key, first, count, false, tally);
+void walk_analog(const Body& body, Incidence incidence, std::uint64_t key, std::uint64_t first,
+                 std::uint64_t count, Tally& tally) {
+  walk(body, incidence, key, first, count, false, tally);
 }
 
-}  // namespace translucube
+}  // namespace translucube::slab

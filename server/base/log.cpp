@@ -14,8 +14,6 @@
 namespace translucube::server {
 namespace {
 
-using api::LogFormat;
-
 constexpr std::size_t longest_text = 512;
 // Begins a payload that is fields already; no plain message has it.
 constexpr char fields_follow = '\x1e';

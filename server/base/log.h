@@ -10,20 +10,20 @@
 #include <variant>
 #include <vector>
 
-#include "api/config/server_config.h"
-
 namespace translucube::server {
+
+enum class LogFormat { logfmt, json };
 
 using LogValue = std::variant<std::string_view, std::int64_t, double>;
 using LogFields = std::vector<std::pair<std::string_view, LogValue>>;
 
 /// ` key=value` for each field, or `,"key":value`. Text is cut at 512 bytes; bytes that are not
 /// visible ASCII become \xHH, or in JSON \u00HH. Keys are ours, and plain.
-std::string log_text(api::LogFormat format, const LogFields& fields);
+std::string log_text(LogFormat format, const LogFields& fields);
 
 /// Logs to standard error from here on: time (UTC), level, then the fields, or for a plain message
 /// the field `message`.
-void set_up_log(api::LogFormat format);
+void set_up_log(LogFormat format);
 
 /// One line of these fields, at the level info, or warn where the service is at fault.
 enum class LogLevel { info, warn };

@@ -14,6 +14,8 @@
 #include <tuple>
 #include <vector>
 
+#include "picture/version.h"
+
 namespace translucube::server {
 namespace {
 
@@ -161,7 +163,7 @@ Metrics::Metrics() : impl_(std::make_unique<Impl>()) {
       .Name("translucube_build_info")
       .Help("Always 1; its label is the version that runs.")
       .Register(impl_->registry)
-      .Add({{"version", TRANSLUCUBE_VERSION}})
+      .Add({{"version", std::string(project_version())}})
       .Set(1);
 }
 

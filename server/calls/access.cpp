@@ -2,23 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "api/base/text.h"
 
 namespace translucube::server {
 namespace {
 
+using api::lower_case;
 using api::Problem;
 using api::ProblemCode;
 using api::Result;
 
 constexpr std::array<std::string_view, 3> own_names{"localhost", "127.0.0.1", "[::1]"};
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
 
 /// Without ":port", which may follow a name, an IPv4 address or a bracketed IPv6 one.
 std::string_view without_port(std::string_view host) {
@@ -31,7 +26,7 @@ std::string_view without_port(std::string_view host) {
 
 bool is_our_host(const AccessPolicy& policy, std::string_view given) {
   if (!policy.loopback && policy.hosts.empty()) return true;
-  const std::string host = lower(given);
+  const std::string host = lower_case(given);
   const std::string_view name = without_port(host);
   const auto is_it = [&](std::string_view own) { return own == host || own == name; };
   return std::ranges::find(own_names, name) != own_names.end() ||
@@ -41,12 +36,12 @@ bool is_our_host(const AccessPolicy& policy, std::string_view given) {
 /// Of a page of ours, or of no page: browsers send an Origin with each POST of theirs.
 bool is_our_origin(const AccessPolicy& policy, const HttpRequest& request) {
   if (request.headers.contains("origin")) {
-    const std::string origin = lower(request.header("origin"));
-    const std::string host = lower(request.header("host"));
+    const std::string origin = lower_case(request.header("origin"));
+    const std::string host = lower_case(request.header("host"));
     return origin == "http://" + host || origin == "https://" + host ||
            std::ranges::find(policy.origins, origin) != policy.origins.end();
   }
-  return lower(request.header("sec-fetch-site")) != "cross-site";
+  return lower_case(request.header("sec-fetch-site")) != "cross-site";
 }
 
 /// The web explorer, which a browser asks for without a token. It holds nothing but itself.
@@ -56,7 +51,7 @@ bool is_page(std::string_view path) { return path == "/" || path.starts_with("/w
 std::string_view bearer_token(const HttpRequest& request) {
   constexpr std::string_view scheme = "bearer ";
   std::string_view credentials = request.header("authorization");
-  if (lower(credentials.substr(0, scheme.size())) != scheme) return {};
+  if (lower_case(credentials.substr(0, scheme.size())) != scheme) return {};
   credentials.remove_prefix(scheme.size());
   while (credentials.starts_with(' ')) credentials.remove_prefix(1);
   return credentials;
@@ -67,10 +62,10 @@ std::string_view bearer_token(const HttpRequest& request) {
 bool is_loopback(std::string_view host) {
   const bool ipv4 = host.starts_with("127.") && host.size() <= 15 &&
                     host.find_first_not_of("0123456789.") == host.npos;
-  return ipv4 || host == "::1" || lower(host) == "localhost";
+  return ipv4 || host == "::1" || lower_case(host) == "localhost";
 }
 
-AccessPolicy access_policy(const api::ServerConfig& config) {
+AccessPolicy access_policy(const ServerConfig& config) {
   AccessPolicy policy{is_loopback(config.host), {}, config.hosts, config.origins};
   if (config.tokens_file)
     policy.tokens = load_tokens(*config.tokens_file);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "api/base/result.h"
-#include "api/config/server_config.h"
+#include "server/base/server_config.h"
 #include "server/calls/tokens.h"
 #include "server/http/message.h"
 
@@ -23,7 +23,7 @@ struct AccessPolicy {
 
 /// Reads the tokens that the config names. Throws TokensError, also where others than this machine
 /// could connect and there are none.
-AccessPolicy access_policy(const api::ServerConfig& config);
+AccessPolicy access_policy(const ServerConfig& config);
 
 /// True for the addresses that only this machine can connect to: 127.0.0.0/8, ::1, localhost.
 bool is_loopback(std::string_view host);

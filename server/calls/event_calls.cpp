@@ -3,8 +3,7 @@
 
 #include <chrono>
 
-#include "server/calls/handlers.h"
-#include "server/http/negotiation.h"
+#include "server/calls/answers.h"
 
 namespace translucube::server {
 namespace {
@@ -37,7 +36,7 @@ struct Stream {
   JobService& service;
   EventsAfter events_after;
   SamplesToSee samples_to_see;
-  Place place;
+  Places::Place place;
   std::uint64_t last;
   bool ended = false, begun = false;
   std::uint32_t samples = 0;
@@ -70,7 +69,7 @@ struct Stream {
   }
 };
 
-HttpResponse stream_of(Endpoints& endpoints, const HttpRequest& request, EventsAfter events_after,
+HttpResponse stream_of(CallContext& context, const HttpRequest& request, EventsAfter events_after,
                        SamplesToSee samples_to_see) {
   const std::uint64_t last = last_event_id(request.header("last-event-id"));
   const auto found = events_after(last);
@@ -78,15 +77,12 @@ HttpResponse stream_of(Endpoints& endpoints, const HttpRequest& request, EventsA
   // Nothing will come: with 204 a browser does not connect again.
   if (found->ended && found->events.empty()) return {204, {}, {}, {}};
   if (request.method == "HEAD") return {200, {}, "text/event-stream", {}};
-  const auto stream = std::shared_ptr<Stream>(
-      new Stream{endpoints.service,
-                 std::move(events_after),
-                 std::move(samples_to_see),
-                 {endpoints.streams, endpoints.catalog.server.event_streams},
-                 last});
-  if (!stream->place.got())
+  Places::Place place = context.streams.take();
+  if (!place)
     return problem_response(
         {ProblemCode::overloaded, "There are as many event streams as the service can feed.", {}});
+  const auto stream = std::make_shared<Stream>(Stream{
+      context.service, std::move(events_after), std::move(samples_to_see), std::move(place), last});
   HttpResponse response{
       200, {}, "text/event-stream", EventStream{[stream] { return stream->next(); }}};
   response.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
@@ -95,21 +91,21 @@ HttpResponse stream_of(Endpoints& endpoints, const HttpRequest& request, EventsA
 
 }  // namespace
 
-HttpResponse get_render_events(Endpoints& endpoints, const HttpRequest& request,
-                               const PathIds& ids) {
-  JobService& service = endpoints.service;
+HttpResponse get_render_events(CallContext& context, const HttpRequest& request,
+                               const PathParameters& path) {
+  JobService& service = context.service;
   return stream_of(
-      endpoints, request,
-      [&service, id = ids.id](auto after) { return service.events_of_render(id, after); },
-      [&service, id = ids.id] { return service.samples_to_see(id); });
+      context, request,
+      [&service, id = path.id](auto after) { return service.events_of_render(id, after); },
+      [&service, id = path.id] { return service.samples_to_see(id); });
 }
 
-HttpResponse get_sweep_events(Endpoints& endpoints, const HttpRequest& request,
-                              const PathIds& ids) {
-  JobService& service = endpoints.service;
+HttpResponse get_sweep_events(CallContext& context, const HttpRequest& request,
+                              const PathParameters& path) {
+  JobService& service = context.service;
   return stream_of(
-      endpoints, request,
-      [&service, id = ids.id](auto after) { return service.events_of_sweep(id, after); },
+      context, request,
+      [&service, id = path.id](auto after) { return service.events_of_sweep(id, after); },
       [] { return 0; });
 }
 

@@ -1,10 +1,9 @@
 #include "server/calls/front.h"
 
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "api/openapi.h"
 #include "server/base/log.h"
+#include "server/calls/router.h"
 #include "server/http/problems.h"
 
 namespace translucube::server {
@@ -12,34 +11,17 @@ namespace {
 
 using api::ProblemCode;
 
-/// Segment by segment; a segment of the pattern in braces stands for any.
-bool matches(std::string_view pattern, std::string_view path) {
-  while (!pattern.empty() && !path.empty()) {
-    const std::size_t a = pattern.find('/', 1), b = path.find('/', 1);
-    const std::string_view wanted = pattern.substr(0, a), given = path.substr(0, b);
-    if (wanted != given && !(wanted.starts_with("/{") && given.size() > 1)) return false;
-    pattern.remove_prefix(wanted.size());
-    path.remove_prefix(given.size());
-  }
-  return pattern.empty() && path.empty();
-}
+constexpr std::string_view metrics_path = "/metrics";
 
 }  // namespace
 
-std::string_view route_pattern(std::string_view path) {
-  static const std::vector<std::string> patterns = [] {
-    std::vector<std::string> all;
-    const auto document = nlohmann::json::parse(api::openapi_document());
-    for (const auto& [pattern, item] : document["paths"].items()) all.push_back(pattern);
-    return all;
-  }();
-  for (const std::string& pattern : patterns)
-    if (matches(pattern, path)) return pattern;
-  return "other";
+std::string_view route_of(std::string_view path) {
+  const std::string_view pattern = path == metrics_path ? metrics_path : route_pattern(path);
+  return pattern.empty() ? "other" : pattern;
 }
 
-Front::Front(AccessPolicy policy, Metrics& metrics, Respond endpoints)
-    : policy_(std::move(policy)), metrics_(metrics), endpoints_(std::move(endpoints)) {}
+Front::Front(AccessPolicy policy, Metrics& metrics, Respond respond)
+    : policy_(std::move(policy)), metrics_(metrics), respond_(std::move(respond)) {}
 
 HttpHandlers Front::handlers() {
   return {[this](HttpRequest& request) { return admit(request); },
@@ -55,8 +37,8 @@ std::optional<HttpResponse> Front::admit(HttpRequest& request) const {
 }
 
 HttpResponse Front::respond(const HttpRequest& request) const {
-  if (request.path == "/metrics") return metrics_response(request);
-  HttpResponse response = endpoints_(request);
+  if (request.path == metrics_path) return metrics_response(request);
+  HttpResponse response = respond_(request);
   if (auto* stream = std::get_if<EventStream>(&response.body))
     stream->next = [next = std::move(stream->next), open = metrics_.open_stream()] {
       return next();
@@ -75,7 +57,7 @@ HttpResponse Front::metrics_response(const HttpRequest& request) const {
 }
 
 void Front::done(const RequestRecord& record) const {
-  const std::string_view route = route_pattern(record.path);
+  const std::string_view route = route_of(record.path);
   metrics_.count_request(record.method.empty() ? "none" : record.method, route, record.status,
                          record.seconds);
   LogFields fields{{"id", record.id},

@@ -9,13 +9,13 @@
 
 namespace translucube::server {
 
-/// What stands before the endpoints: access, /metrics, the log and the counts of every request.
+/// What stands before the calls: access, /metrics, the log and the counts of every request.
 /// Outlives the server that has its handlers.
 class Front {
  public:
   using Respond = std::function<HttpResponse(const HttpRequest&)>;
 
-  Front(AccessPolicy policy, Metrics& metrics, Respond endpoints);
+  Front(AccessPolicy policy, Metrics& metrics, Respond respond);
 
   HttpHandlers handlers();
 
@@ -27,11 +27,11 @@ class Front {
 
   const AccessPolicy policy_;
   Metrics& metrics_;
-  const Respond endpoints_;
+  const Respond respond_;
 };
 
-/// The pattern of a path in the OpenAPI document (/v1/renders/{id}/image), "other" if it is none:
-/// a client cannot make up values.
-std::string_view route_pattern(std::string_view path);
+/// For log and metrics: the pattern of a path (/v1/renders/{id}/image), "other" if it has none: a
+/// client cannot make up values.
+std::string_view route_of(std::string_view path);
 
 }  // namespace translucube::server

@@ -1,5 +1,4 @@
-#include "server/calls/handlers.h"
-#include "server/http/negotiation.h"
+#include "server/calls/answers.h"
 
 namespace translucube::server {
 namespace {
@@ -8,9 +7,10 @@ using api::Problem;
 using api::ProblemCode;
 using api::Result;
 
-constexpr const char* what_there_is =
-    "An image can be had as image/png, image/x-exr, image/tiff or image/jpeg "
-    "(?format=png, exr, tiff, jpeg).";
+std::string what_there_is() {
+  return "An image can be had as " + list_formats(&ImageFormatRow::mime_type, " or ") +
+         " (?format=" + list_formats(&ImageFormatRow::name, ", ") + ").";
+}
 
 HttpResponse with_headers_of(const ImageFile& image, HttpResponse response) {
   response.headers.insert(response.headers.end(), {{"ETag", image.etag},
@@ -45,41 +45,29 @@ HttpResponse body_response(const HttpRequest& request, const ImageFile& image) {
   return {200, {}, image.mime_type, FileSlice{image.file, 0, size}};
 }
 
+/// The format that the query names, else the best of those that the client accepts.
+std::optional<ImageFormat> wanted_format(const HttpRequest& request) {
+  const auto named = request.parameter("format");
+  return named ? format_named(*named) : negotiate_image(request.header("accept"));
+}
+
 /// The query of an image, with what the headers ask for.
 Result<ImageQuery> image_query(const HttpRequest& request) {
   ImageQuery query;
-  std::optional<ImageFormat> format;
-  bool format_given = false;
-  for (const auto& [name, value] : request.query) {
-    if (name == "format") {
-      format_given = true;
-      // Names only: image_format also takes file extensions.
-      for (const ImageFormat known :
-           {ImageFormat::png, ImageFormat::exr, ImageFormat::tiff, ImageFormat::jpeg})
-        if (value == translucube::name(known)) format = known;
-    }
-    if (name == "display") query.display = value;
-    if (name == "view") query.view = value;
-    if (name == "colorspace") query.colorspace = value;
-    if (name == "partial") {
-      if (value != "true" && value != "false")
-        return Problem{ProblemCode::invalid_request,
-                       "A query parameter is not valid.",
-                       {{"?partial", "must be true or false"}}};
-      query.partial = value == "true";
-    }
-    if (name == "absorber") query.redevelopment.absorber = value;
-    if (name == "absorption") {
-      const std::optional<double> number = api::absorption_number(value);
-      if (!number)
-        return Problem{ProblemCode::invalid_request,
-                       "A query parameter is not valid.",
-                       {{"?absorption", "must be a number in [0, 1]"}}};
-      query.redevelopment.absorption = number;
-    }
+  query.display = request.parameter("display");
+  query.view = request.parameter("view");
+  query.colorspace = request.parameter("colorspace");
+  const auto partial = flag_query(request, "partial");
+  if (!partial) return partial.problem();
+  query.partial = *partial;
+  query.redevelopment.absorber = request.parameter("absorber");
+  if (const auto text = request.parameter("absorption")) {
+    query.redevelopment.absorption = api::absorption_number(*text);
+    if (!query.redevelopment.absorption)
+      return bad_parameter("absorption", "must be a number in [0, 1]");
   }
-  if (!format_given) format = negotiate_image(request.header("accept"));
-  if (!format) return Problem{ProblemCode::not_acceptable, what_there_is, {}};
+  const auto format = wanted_format(request);
+  if (!format) return Problem{ProblemCode::not_acceptable, what_there_is(), {}};
   query.format = *format;
   return query;
 }
@@ -98,20 +86,23 @@ HttpResponse image_response(const HttpRequest& request, Find&& find) {
 
 }  // namespace
 
-HttpResponse get_image(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
+HttpResponse get_image(CallContext& context, const HttpRequest& request,
+                       const PathParameters& path) {
   return image_response(
-      request, [&](const ImageQuery& query) { return endpoints.service.image(ids.id, query); });
+      request, [&](const ImageQuery& query) { return context.service.image(path.id, query); });
 }
 
-HttpResponse get_point_image(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
+HttpResponse get_point_image(CallContext& context, const HttpRequest& request,
+                             const PathParameters& path) {
   return image_response(request, [&](const ImageQuery& query) {
-    return endpoints.service.point_image(ids.id, ids.point, query);
+    return context.service.point_image(path.id, path.point, query);
   });
 }
 
-HttpResponse get_sheet(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
+HttpResponse get_sheet(CallContext& context, const HttpRequest& request,
+                       const PathParameters& path) {
   return image_response(
-      request, [&](const ImageQuery& query) { return endpoints.service.sheet(ids.id, query); });
+      request, [&](const ImageQuery& query) { return context.service.sheet(path.id, query); });
 }
 
 }  // namespace translucube::server

@@ -1,7 +1,6 @@
 #include <algorithm>
 
-#include "server/calls/handlers.h"
-#include "server/http/negotiation.h"
+#include "server/calls/answers.h"
 
 namespace translucube::server {
 
@@ -13,10 +12,10 @@ bool has_ended(const RenderStatus& status) { return api::is_end(status.state); }
 
 }  // namespace
 
-HttpResponse post_render(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+HttpResponse post_render(CallContext& context, const HttpRequest& request, const PathParameters&) {
   const auto key = submission_key(request);
   if (!key) return problem_response(key.problem());
-  auto submitted = endpoints.service.submit(request.body, *key);
+  auto submitted = context.service.submit(request.body, *key);
   if (!submitted) return problem_response(submitted.problem());
   auto& [status, created] = *submitted;
 
@@ -25,7 +24,7 @@ HttpResponse post_render(Endpoints& endpoints, const HttpRequest& request, const
     const int seconds = std::min(*asked, longest_wait_s);
     bool waited = false;
     auto result = answer_after(
-        endpoints, seconds, waited, [&] { return endpoints.service.get(status.id); }, has_ended);
+        context, seconds, waited, [&] { return context.service.get(status.id); }, has_ended);
     if (!result) return problem_response(result.problem());
     status = *std::move(result);
     if (waited || seconds == 0) applied = "wait=" + std::to_string(seconds);
@@ -37,27 +36,28 @@ HttpResponse post_render(Endpoints& endpoints, const HttpRequest& request, const
   return response;
 }
 
-HttpResponse list_renders(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+HttpResponse list_renders(CallContext& context, const HttpRequest& request, const PathParameters&) {
   const auto query = list_query(request);
   if (!query) return problem_response(query.problem());
-  const auto page = endpoints.service.list(*query);
+  const auto page = context.service.list(*query);
   if (!page) return problem_response(page.problem());
   const auto& [renders, next_cursor] = *page;
   return tagged_json(request, api::render_list_json(renders, next_cursor));
 }
 
-HttpResponse get_render(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
-  return status_response(endpoints, request, [&] { return endpoints.service.tell(ids.id); });
+HttpResponse get_render(CallContext& context, const HttpRequest& request,
+                        const PathParameters& path) {
+  return status_response(context, request, [&] { return context.service.tell(path.id); });
 }
 
-HttpResponse cancel_render(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {
-  const auto status = endpoints.service.cancel(ids.id);
+HttpResponse cancel_render(CallContext& context, const HttpRequest&, const PathParameters& path) {
+  const auto status = context.service.cancel(path.id);
   if (!status) return problem_response(status.problem());
   return json_response(200, to_json(*status));
 }
 
-HttpResponse delete_render(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {
-  if (const auto problem = endpoints.service.remove(ids.id)) return problem_response(*problem);
+HttpResponse delete_render(CallContext& context, const HttpRequest&, const PathParameters& path) {
+  if (const auto problem = context.service.remove(path.id)) return problem_response(*problem);
   return {204, {}, {}, {}};
 }
 

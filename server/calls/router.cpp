@@ -4,52 +4,19 @@
 #include <array>
 #include <iterator>
 
-#include "api/answer/listings.h"
-#include "api/openapi.h"
 #include "server/base/ids.h"
-#include "server/calls/handlers.h"
+#include "server/http/problems.h"
 
 namespace translucube::server {
 namespace {
 
-using api::Problem;
 using api::ProblemCode;
-
-HttpResponse get_absorbers(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
-  return tagged_json(request, api::absorbers_json(endpoints.catalog));
-}
-
-HttpResponse get_environments(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
-  return tagged_json(request, api::environments_json(endpoints.catalog));
-}
-
-HttpResponse get_objects(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
-  return tagged_json(request, api::objects_json(endpoints.catalog));
-}
-
-HttpResponse get_displays(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
-  return tagged_json(request, api::displays_json(endpoints.colors.displays()));
-}
-
-HttpResponse get_openapi(Endpoints&, const HttpRequest& request, const PathIds&) {
-  return tagged_json(request, std::string(api::openapi_document()));
-}
-
-HttpResponse livez(Endpoints&, const HttpRequest&, const PathIds&) {
-  return json_response(200, R"({"status":"alive"})");
-}
-
-HttpResponse readyz(Endpoints& endpoints, const HttpRequest&, const PathIds&) {
-  if (const auto reason = endpoints.service.unready_reason())
-    return problem_response({ProblemCode::overloaded, *reason, {}});
-  return json_response(200, R"({"status":"ready"})");
-}
 
 using Parameters = std::array<std::string_view, 7>;
 
 struct Route {
   std::string_view method, pattern;  ///< "{id}", "{point}" and "{file}" stand for a segment each
-  HttpResponse (*handle)(Endpoints&, const HttpRequest&, const PathIds&);
+  HttpResponse (*handle)(CallContext&, const HttpRequest&, const PathParameters&);
   Parameters query{};  ///< those it knows
 };
 
@@ -81,8 +48,8 @@ constexpr std::array routes{
     Route{"GET", "/v1/displays", get_displays},
     Route{"GET", "/", get_page},
     Route{"GET", "/web/{file}", get_web_file},
-    Route{"GET", "/livez", livez},
-    Route{"GET", "/readyz", readyz},
+    Route{"GET", "/livez", get_livez},
+    Route{"GET", "/readyz", get_readyz},
     Route{"GET", "/openapi.json", get_openapi},
 };
 
@@ -94,21 +61,21 @@ std::string_view take_segment(std::string_view& path) {
 }
 
 /// What stands in the places of the pattern, or nothing if it is another path.
-std::optional<PathIds> match(std::string_view pattern, std::string_view path) {
-  PathIds ids;
+std::optional<PathParameters> match(std::string_view pattern, std::string_view path) {
+  PathParameters parameters;
   if (std::ranges::count(pattern, '/') != std::ranges::count(path, '/')) return std::nullopt;
   if (!path.starts_with('/')) return std::nullopt;
   pattern.remove_prefix(1);
   path.remove_prefix(1);
   while (!pattern.empty() || !path.empty()) {
     const std::string_view expected = take_segment(pattern), given = take_segment(path);
-    std::string* place = ids.place(expected);
+    std::string* place = parameters.place(expected);
     if (place != nullptr && !given.empty())
       *place = given;
     else if (expected != given)
       return std::nullopt;
   }
-  return ids;
+  return parameters;
 }
 
 std::vector<api::Fault> query_faults(const Route& route, const HttpRequest& request) {
@@ -136,12 +103,18 @@ std::vector<Call> calls() {
   return all;
 }
 
-HttpResponse respond(Endpoints& endpoints, const HttpRequest& request) {
+std::string_view route_pattern(std::string_view path) {
+  const auto route = std::ranges::find_if(
+      routes, [&](const Route& known) { return match(known.pattern, path).has_value(); });
+  return route == routes.end() ? "" : route->pattern;
+}
+
+HttpResponse respond(CallContext& context, const HttpRequest& request) {
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
   std::string allowed;
   for (const Route& route : routes) {
-    const std::optional<PathIds> ids = match(route.pattern, request.path);
-    if (!ids) continue;
+    const std::optional<PathParameters> parameters = match(route.pattern, request.path);
+    if (!parameters) continue;
     if (route.method != method) {
       allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
       if (route.method == "GET") allowed += ", HEAD";
@@ -151,9 +124,9 @@ HttpResponse respond(Endpoints& endpoints, const HttpRequest& request) {
     if (!faults.empty())
       return problem_response(
           {ProblemCode::invalid_request, "A query parameter is not valid.", faults});
-    if (!ids->id.empty() && !is_id(ids->id))
+    if (!parameters->id.empty() && !is_id(parameters->id))
       return problem_response({ProblemCode::not_found, "There is nothing of this id.", {}});
-    return route.handle(endpoints, request, *ids);
+    return route.handle(context, request, *parameters);
   }
   if (allowed.empty())
     return problem_response({ProblemCode::not_found, "There is nothing at this path.", {}});

@@ -1,39 +1,18 @@
-#include "server/calls/handlers.h"
-#include "server/http/negotiation.h"
+#include "server/calls/answers.h"
 
 namespace translucube::server {
 
-using api::Problem;
-using api::ProblemCode;
-using api::Result;
-using api::SweepStatus;
-
-namespace {
-
-Result<bool> dry_run_query(const HttpRequest& request) {
-  for (const auto& [name, value] : request.query) {
-    if (name != "dry_run" || value == "false") continue;
-    if (value == "true") return true;
-    return Problem{ProblemCode::invalid_request,
-                   "A query parameter is not valid.",
-                   {{"?dry_run", "must be true or false"}}};
-  }
-  return false;
-}
-
-}  // namespace
-
-HttpResponse post_sweep(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+HttpResponse post_sweep(CallContext& context, const HttpRequest& request, const PathParameters&) {
   const auto key = submission_key(request);
   if (!key) return problem_response(key.problem());
-  const auto dry = dry_run_query(request);
+  const auto dry = flag_query(request, "dry_run");
   if (!dry) return problem_response(dry.problem());
   if (*dry) {
-    auto counts = endpoints.service.count_sweep(request.body);
+    auto counts = context.service.count_sweep(request.body);
     if (!counts) return problem_response(counts.problem());
     return json_response(200, *std::move(counts));
   }
-  const auto submitted = endpoints.service.submit_sweep(request.body, *key);
+  const auto submitted = context.service.submit_sweep(request.body, *key);
   if (!submitted) return problem_response(submitted.problem());
   const auto& [status, created] = *submitted;
   HttpResponse response = json_response(api::is_end(status.state) ? 200 : 202, to_json(status));
@@ -42,28 +21,28 @@ HttpResponse post_sweep(Endpoints& endpoints, const HttpRequest& request, const 
   return response;
 }
 
-HttpResponse list_sweeps(Endpoints& endpoints, const HttpRequest& request, const PathIds&) {
+HttpResponse list_sweeps(CallContext& context, const HttpRequest& request, const PathParameters&) {
   const auto query = list_query(request);
   if (!query) return problem_response(query.problem());
-  const auto page = endpoints.service.list_sweeps(*query);
+  const auto page = context.service.list_sweeps(*query);
   if (!page) return problem_response(page.problem());
   const auto& [sweeps, next_cursor] = *page;
   return tagged_json(request, api::sweep_list_json(sweeps, next_cursor));
 }
 
-HttpResponse get_sweep(Endpoints& endpoints, const HttpRequest& request, const PathIds& ids) {
-  return status_response(endpoints, request, [&] { return endpoints.service.tell_sweep(ids.id); });
+HttpResponse get_sweep(CallContext& context, const HttpRequest& request,
+                       const PathParameters& path) {
+  return status_response(context, request, [&] { return context.service.tell_sweep(path.id); });
 }
 
-HttpResponse cancel_sweep(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {
-  const auto status = endpoints.service.cancel_sweep(ids.id);
+HttpResponse cancel_sweep(CallContext& context, const HttpRequest&, const PathParameters& path) {
+  const auto status = context.service.cancel_sweep(path.id);
   if (!status) return problem_response(status.problem());
   return json_response(200, to_json(*status));
 }
 
-HttpResponse delete_sweep(Endpoints& endpoints, const HttpRequest&, const PathIds& ids) {
-  if (const auto problem = endpoints.service.remove_sweep(ids.id))
-    return problem_response(*problem);
+HttpResponse delete_sweep(CallContext& context, const HttpRequest&, const PathParameters& path) {
+  if (const auto problem = context.service.remove_sweep(path.id)) return problem_response(*problem);
   return {204, {}, {}, {}};
 }
 

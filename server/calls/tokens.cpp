@@ -3,13 +3,13 @@
 #include <openssl/crypto.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <optional>
 
 #include "api/base/field_reader.h"
 #include "api/base/json_reader.h"
+#include "api/base/text.h"
 #include "server/base/ids.h"
 
 namespace translucube::server {
@@ -22,16 +22,16 @@ std::optional<Sha256> from_hex(std::string_view text) {
   Sha256 hash{};
   if (text.size() != 2 * hash.size()) return std::nullopt;
   for (std::size_t i = 0; i < hash.size(); ++i) {
-    const char* at = text.data() + 2 * i;
-    const auto [end, error] = std::from_chars(at, at + 2, hash[i], 16);
-    if (error != std::errc() || end != at + 2) return std::nullopt;
+    const auto byte = api::number_of<unsigned char>(text.substr(2 * i, 2), 16);
+    if (!byte) return std::nullopt;
+    hash[i] = *byte;
   }
   return hash;
 }
 
 void read_token(const nlohmann::json& value, const std::string& pointer, std::vector<Token>& tokens,
                 api::Faults& faults) {
-  api::ObjectReader object(value, pointer, faults);
+  api::FieldReader object(value, pointer, faults);
   const auto name = object.string("name", api::Presence::required);
   const auto text = object.string("sha256", api::Presence::required);
   object.refuse_unknown_keys();
@@ -67,7 +67,7 @@ std::vector<Token> load_tokens(const std::filesystem::path& file) {
   auto& [document, faults] = *read;
 
   std::vector<Token> tokens;
-  api::ObjectReader object(document, "", faults);
+  api::FieldReader object(document, "", faults);
   const nlohmann::json* list = object.find("tokens", api::Presence::required);
   object.refuse_unknown_keys();
   if (list && !list->is_array()) object.fault("tokens", "must be an array");

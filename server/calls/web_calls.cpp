@@ -5,9 +5,8 @@
 #include <array>
 
 #include "server/base/ids.h"
-#include "server/calls/handlers.h"
+#include "server/calls/answers.h"
 #include "server/calls/web_files.h"
-#include "server/http/negotiation.h"
 
 namespace translucube::server {
 namespace {
@@ -52,12 +51,12 @@ std::string_view web_content_type(std::string_view name) {
   return "application/octet-stream";
 }
 
-HttpResponse get_page(Endpoints&, const HttpRequest& request, const PathIds&) {
+HttpResponse get_page(CallContext&, const HttpRequest& request, const PathParameters&) {
   return web_response(request, "index.html");
 }
 
-HttpResponse get_web_file(Endpoints&, const HttpRequest& request, const PathIds& ids) {
-  return web_response(request, ids.file);
+HttpResponse get_web_file(CallContext&, const HttpRequest& request, const PathParameters& path) {
+  return web_response(request, path.file);
 }
 
 }  // namespace translucube::server

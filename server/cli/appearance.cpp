@@ -1,10 +1,17 @@
-#include "server/cli/appearance.h"
+// Measures a flat slab of a material: its reflectance, transmittance and haze, as JSON.
 
+#include <CLI/CLI.hpp>
 #include <iostream>
+#include <memory>
 
+#include "api/answer/appearance_report.h"
 #include "api/request/appearance_request.h"
+#include "api/request/scene_spec.h"
 #include "server/base/file.h"
+#include "server/cli/command.h"
+#include "server/cli/config.h"
 #include "server/cli/input.h"
+#include "server/cli/options.h"
 #include "server/cli/verbs.h"
 
 namespace translucube::server {
@@ -12,44 +19,47 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct AppearanceOptions {
+  std::string request;             ///< a file, or "-" for standard input
+  std::optional<fs::path> output;  ///< standard output where it is not given
+  Setting setting;
+};
+
 int appearance_or_throw(const AppearanceOptions& options) {
-  const api::Catalog catalog = api::load_catalog(config_file(options.config));
-  const auto parsed = api::parse_appearance_request(
-      read_input(options.request, catalog.limits.body_bytes), catalog);
-  if (!parsed) {
-    std::cerr << to_text(parsed.problem());
-    return exit_bad_request;
-  }
+  const api::Catalog catalog = command_line_catalog(options.setting.config);
+  const api::AppearanceRequest request = accepted(api::parse_appearance_request(
+      read_input(options.request, catalog.limits.body_bytes), catalog));
   // The finished file takes the place of what is there: never of a device, a pipe, a folder.
-  if (options.output && fs::exists(*options.output) && !fs::is_regular_file(*options.output)) {
-    std::cerr << options.output->string() << ": is not an ordinary file\n";
-    return exit_failure;
-  }
-  const auto& request = *parsed;
-  const std::string answer =
-      appearance_json(request, measure(request, catalog, options.threads), catalog);
+  if (options.output && fs::exists(*options.output) && !fs::is_regular_file(*options.output))
+    throw Refusal{exit_failure, options.output->string() + ": is not an ordinary file\n"};
+  const Material material = scene_spec(render_request(request, catalog), catalog).material;
+  const SlabAppearance appearance =
+      slab_appearance(material, request.thickness_mm, request.standard_error, request.seed,
+                      options.setting.threads);
+  const std::string answer = appearance_json(request, appearance, catalog);
   if (options.output) {
     write_atomically(*options.output, answer);
     return 0;
   }
   std::cout << answer << std::flush;
-  if (std::cout) return 0;
-  std::cerr << "standard output cannot be written\n";
-  return exit_failure;
+  if (!std::cout) throw Refusal{exit_failure, "standard output cannot be written\n"};
+  return 0;
 }
 
 }  // namespace
 
-int run_appearance(const AppearanceOptions& options) {
-  try {
-    return appearance_or_throw(options);
-  } catch (const InputError& error) {
-    std::cerr << error.what() << '\n';
-    return exit_bad_request;
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
-  }
-  return exit_failure;
+Verb add_appearance(CLI::App& app) {
+  const auto options = std::make_shared<AppearanceOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "appearance", "Measures a flat slab of the material: reflectance, transmittance, haze, ...");
+  verb->add_option("request", options->request, "The request, JSON; - reads standard input")
+      ->required();
+  verb->add_option("-o,--output", options->output,
+                   "A file for the answer, JSON; else it goes to standard output");
+  add_setting(*verb, options->setting);
+  return {verb, [options] {
+            return ended_command("slab", [&] { return appearance_or_throw(*options); });
+          }};
 }
 
 }  // namespace translucube::server

@@ -1,11 +1,16 @@
-#include <cstdlib>
+#include "server/cli/config.h"
 
-#include "server/cli/verbs.h"
+#include <cstdlib>
+#include <filesystem>
+
+#include "api/base/config_file.h"
 
 namespace translucube::server {
+namespace {
 
-std::filesystem::path config_file(const std::string& named) {
-  namespace fs = std::filesystem;
+namespace fs = std::filesystem;
+
+fs::path config_file(const std::string& named) {
   if (!named.empty()) return named;
   if (const char* variable = std::getenv("TRANSLUCUBE_CONFIG"); variable && *variable)
     return variable;
@@ -18,6 +23,21 @@ std::filesystem::path config_file(const std::string& named) {
     if (fs::is_regular_file(beside, error)) return beside;
   }
   return fs::path(TRANSLUCUBE_SOURCE_DIR) / "config/service.json";
+}
+
+}  // namespace
+
+Configuration load_configuration(const std::string& named) {
+  api::ConfigFile file(config_file(named));
+  // The catalog last: it refuses the faults of the whole file.
+  ServerConfig server = read_server_config(file);
+  return {api::load_catalog(file), std::move(server)};
+}
+
+api::Catalog command_line_catalog(const std::string& named) {
+  api::Catalog catalog = load_configuration(named).catalog;
+  catalog.any_file = true;
+  return catalog;
 }
 
 }  // namespace translucube::server

@@ -1,38 +1,11 @@
 #include "server/cli/outputs.h"
 
-#include <iostream>
-#include <new>
-
-#include "renderer/scene/spec.h"
 #include "server/base/file.h"
-#include "server/cli/input.h"
-#include "server/cli/verbs.h"
+#include "server/cli/command.h"
 
 namespace translucube::server {
 
 namespace fs = std::filesystem;
-
-Refusal refusal_of(const api::Problem& problem) { return {exit_bad_request, to_text(problem)}; }
-
-int ended_command(const std::function<int()>& verb) {
-  try {
-    return verb();
-  } catch (const Refusal& refusal) {
-    std::cerr << refusal.message;
-    return refusal.status;
-  } catch (const InputError& error) {
-    std::cerr << error.what() << '\n';
-    return exit_bad_request;
-  } catch (const SceneError& error) {
-    std::cerr << error.what() << '\n';
-    return exit_bad_request;
-  } catch (const std::bad_alloc&) {
-    std::cerr << "There is not enough memory for a render of this size.\n";
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << '\n';
-  }
-  return exit_failure;
-}
 
 void check_output_place(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
@@ -43,23 +16,21 @@ void check_output_place(const fs::path& file) {
 }
 
 std::vector<Output> checked_outputs(const std::vector<fs::path>& files,
-                                    const std::optional<std::string>& display,
-                                    const std::optional<std::string>& view,
-                                    const ColorConfig& colors) {
+                                    const DisplayChoice& display, const ColorConfig& colors) {
   std::vector<Output> outputs;
   bool for_display = false;
   for (const fs::path& file : files) {
-    const std::string extension = file.extension().string();
-    const auto format = image_format(extension.empty() ? "" : extension.substr(1));
+    const auto format = format_of(file);
     if (!format)
-      throw Refusal{exit_bad_request, file.string() + ": must end in .exr, .png, .tiff or .jpeg\n"};
+      throw Refusal{exit_bad_request, file.string() + ": must end in " +
+                                          list_formats(&ImageFormatRow::extension, " or ") + '\n'};
     check_output_place(file);
     ImageQuery query{*format, {}, {}, {}};
-    if (*format != ImageFormat::exr) {
-      prepare_image_codecs();
+    if (row_of(*format).library == ImageLibrary::open_image_io) prepare_image_codecs();
+    if (!is_scene_linear(*format)) {
       for_display = true;
-      query.display = display;
-      query.view = view;
+      query.display = display.display;
+      query.view = display.view;
     }
     const auto form = image_form(query, colors.displays());
     if (!form) {
@@ -70,8 +41,10 @@ std::vector<Output> checked_outputs(const std::vector<fs::path>& files,
     }
     outputs.push_back({file, *form});
   }
-  if ((display || view) && !for_display)
-    throw Refusal{exit_bad_request, "--display and --view are for PNG, TIFF and JPEG outputs\n"};
+  if ((display.display || display.view) && !for_display)
+    throw Refusal{exit_bad_request, "--display and --view are for " +
+                                        list_display_formats(&ImageFormatRow::title, " and ") +
+                                        " outputs\n"};
   return outputs;
 }
 

@@ -1,21 +1,29 @@
+// Renders one request to files, or explains one sample of one pixel.
+
 #include "renderer/render.h"
 
 #include <unistd.h>
 
-#include <atomic>
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <new>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <stop_token>
 
+#include "api/answer/material_report.h"
 #include "api/answer/render_status.h"
+#include "api/base/text.h"
+#include "api/request/canonical.h"
 #include "api/request/parse.h"
+#include "api/request/scene_spec.h"
+#include "renderer/film/explorable_develop.h"
 #include "renderer/film/explorable_file.h"
 #include "server/base/file.h"
-#include "server/base/signals.h"
+#include "server/cli/command.h"
+#include "server/cli/config.h"
 #include "server/cli/input.h"
+#include "server/cli/options.h"
 #include "server/cli/outputs.h"
 #include "server/cli/verbs.h"
 
@@ -23,6 +31,16 @@ namespace translucube::server {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct RenderOptions {
+  std::string request;  ///< a file, or "-" for standard input
+  std::vector<fs::path> outputs;
+  std::optional<fs::path> stats, explorable_out;
+  std::optional<std::string> pixel;  ///< "x,y"
+  std::uint32_t sample = 0;
+  DisplayChoice display;
+  Setting setting;
+};
 
 /// One line on a terminal that writes over itself; nothing where standard error is no terminal.
 class ProgressLine {
@@ -61,57 +79,71 @@ std::string stats_document(const RenderStats& stats, const api::RenderRequest& r
   return document.dump(2) + '\n';
 }
 
-int explain(const Scene& scene, const RenderOptions& options, const api::RenderRequest& request) {
-  const auto [x, y] = *options.pixel;
+struct Pixel {
+  int x = 0, y = 0;
+};
+
+Pixel pixel_of(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  const auto x = api::number_of<int>(text.substr(0, comma));
+  const auto y = comma == text.npos ? std::nullopt : api::number_of<int>(text.substr(comma + 1));
+  if (!x || !y) throw Refusal{exit_bad_request, "--pixel: must be x,y\n"};
+  return {*x, *y};
+}
+
+int explain(const Scene& scene, Pixel pixel, std::uint32_t sample,
+            const api::RenderRequest& request) {
+  const auto [x, y] = pixel;
   if (x < 0 || y < 0 || x >= request.width || y >= request.height)
     throw Refusal{exit_bad_request, "--pixel: lies outside of the image\n"};
-  std::cout << explain_sample(scene, x, y, options.sample) << std::flush;
+  std::cout << explain_sample(scene, x, y, sample) << std::flush;
   return 0;
 }
 
-int render_or_throw(const RenderOptions& options, std::stop_token stop,
-                    const std::atomic<int>& signal) {
-  api::Catalog catalog = api::load_catalog(config_file(options.config));
-  catalog.any_file = true;  // the caller's own files
-  const auto parsed =
-      api::parse_render_request(read_input(options.request, catalog.limits.body_bytes), catalog);
-  if (!parsed) throw refusal_of(parsed.problem());
-  const auto& request = *parsed;
-  const ColorConfig colors(catalog.display_config);
-  const std::vector<Output> outputs =
-      checked_outputs(options.outputs, options.display, options.view, colors);
+/// The picture; of an explorable request, its film goes to a file where one is named.
+Image developed(const Scene& scene, const Film& film, const RenderOptions& options,
+                const api::RenderRequest& request, const std::string& canonical) {
+  if (!request.explorable) return develop(film);
+  const ExplorableFilm explorable = explorable_film(scene, film);
+  if (options.explorable_out)
+    write_atomically(*options.explorable_out, [&](const fs::path& temporary) {
+      write_explorable(temporary, explorable, canonical);
+    });
+  return develop_explorable(explorable, scene, options.setting.threads);
+}
+
+void check_places(const RenderOptions& options, const api::RenderRequest& request) {
   if (options.stats) check_output_place(*options.stats);
-  if (options.explorable_out) {
-    if (!request.explorable)
-      throw Refusal{exit_bad_request, "--explorable-out: the request is not explorable\n"};
-    check_output_place(*options.explorable_out);
-  }
+  if (!options.explorable_out) return;
+  if (!request.explorable)
+    throw Refusal{exit_bad_request, "--explorable-out: the request is not explorable\n"};
+  check_output_place(*options.explorable_out);
+}
+
+int render_or_throw(const RenderOptions& options, const Interruption& interruption) {
+  const std::optional<Pixel> pixel =
+      options.pixel ? std::optional(pixel_of(*options.pixel)) : std::nullopt;
+  if (!pixel && options.outputs.empty())
+    throw Refusal{exit_bad_request, "-o: at least one output is needed\n"};
+  const api::Catalog catalog = command_line_catalog(options.setting.config);
+  const api::RenderRequest request = accepted(
+      api::parse_render_request(read_input(options.request, catalog.limits.body_bytes), catalog));
+  const ColorConfig colors(catalog.display_config);
+  const std::vector<Output> outputs = checked_outputs(options.outputs, options.display, colors);
+  check_places(options, request);
 
   const std::shared_ptr<const Scene> scene = build_scene(api::scene_spec(request, catalog));
-  if (options.pixel) return explain(*scene, options, request);
-
+  if (pixel) return explain(*scene, *pixel, options.sample, request);
   const RenderResult result = [&] {
     ProgressLine line;
-    return render(*scene, request.quality, options.threads, stop,
+    return render(*scene, request.quality, options.setting.threads, interruption.stop,
                   [&](const Progress& progress) { line.show(progress); });
   }();
-  if (result.stopped) return 128 + signal;
-  if (result.stats.nan_samples > 0)
-    throw Refusal{exit_failure, "The renderer made " + std::to_string(result.stats.nan_samples) +
-                                    " samples that are not finite: a bug, please report it.\n"};
+  if (result.stopped) return interruption.exit_status();
+  refuse_nan(result.stats);
   const std::string canonical = api::canonical_json(request);
-  Image picture;
-  if (request.explorable) {
-    const ExplorableFilm film = explorable_film(*scene, result.film);
-    if (options.explorable_out)
-      write_atomically(*options.explorable_out, [&](const fs::path& temporary) {
-        write_explorable(temporary, film, canonical);
-      });
-    picture = develop_explorable(film, *scene, options.threads);
-  } else {
-    picture = develop(result.film);
-  }
-  write_outputs(outputs, picture, colors, canonical);
+  write_outputs(outputs, developed(*scene, result.film, options, request, canonical), colors,
+                canonical);
   if (options.stats)
     write_atomically(*options.stats, stats_document(result.stats, request, catalog));
   return 0;
@@ -119,14 +151,27 @@ int render_or_throw(const RenderOptions& options, std::stop_token stop,
 
 }  // namespace
 
-int run_render(const RenderOptions& options) {
-  std::stop_source stop;
-  std::atomic<int> signal = 0;
-  const SignalWatch watch([&](int received) {
-    signal = received;
-    stop.request_stop();
-  });
-  return ended_command([&] { return render_or_throw(options, stop.get_token(), signal); });
+Verb add_render(CLI::App& app) {
+  const auto options = std::make_shared<RenderOptions>();
+  CLI::App* verb = app.add_subcommand("render", "Renders one request to files");
+  verb->add_option("request", options->request, "The request, JSON; - reads standard input")
+      ->required();
+  add_pictures(*verb, options->outputs,
+               "A picture: " + list_formats(&ImageFormatRow::extension, " or ") +
+                   "; may be given several times");
+  verb->add_option("--stats", options->stats, "Writes samples, seconds, error, ... as JSON");
+  verb->add_option("--explorable-out", options->explorable_out,
+                   "Writes the path lengths of an explorable request, for develop");
+  add_setting(*verb, options->setting);
+  add_display(*verb, options->display, list_display_formats(&ImageFormatRow::title, " and "));
+  CLI::Option* pixel = verb->add_option(
+      "--pixel", options->pixel, "x,y: explains one sample of this pixel and renders nothing");
+  verb->add_option("--sample", options->sample, "Which sample of the pixel")->needs(pixel);
+  return {verb, [options] {
+            return interruptible_command("render", [&](const Interruption& interruption) {
+              return render_or_throw(*options, interruption);
+            });
+          }};
 }
 
 }  // namespace translucube::server

@@ -1,12 +1,16 @@
+// Serves until SIGTERM or SIGINT: here the parts of the service are put together.
+
 #include <malloc.h>
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -15,6 +19,8 @@
 #include "server/base/signals.h"
 #include "server/calls/front.h"
 #include "server/calls/router.h"
+#include "server/cli/command.h"
+#include "server/cli/config.h"
 #include "server/cli/verbs.h"
 #include "server/http/server.h"
 #include "server/store/data_folder.h"
@@ -25,16 +31,23 @@ namespace {
 // All that was promised is on the disk at any time: what has not ended by then may be cut off.
 constexpr std::chrono::seconds longest_drain(8);
 
-api::Catalog configured(const ServeOptions& options) {
-  api::Catalog catalog = api::load_catalog(config_file(options.config));
-  api::ServerConfig& server = catalog.server;
+struct ServeOptions {
+  std::string config;
+  std::optional<std::string> host;
+  std::optional<int> port, threads, workers;
+  std::optional<std::filesystem::path> data, tokens;
+};
+
+Configuration configured(const ServeOptions& options) {
+  Configuration configuration = load_configuration(options.config);
+  ServerConfig& server = configuration.server;
   server.host = options.host.value_or(server.host);
   server.port = options.port.value_or(server.port);
   server.threads_per_worker = options.threads.value_or(server.threads_per_worker);
   server.workers = options.workers.value_or(server.workers);
   server.data_folder = options.data.value_or(server.data_folder);
   if (options.tokens) server.tokens_file = options.tokens;
-  return catalog;
+  return configuration;
 }
 
 /// Ends the process if it outlives the time it has.
@@ -55,12 +68,11 @@ class Watchdog {
   std::jthread thread_;
 };
 
-HttpOptions http_options(const api::Catalog& catalog) {
-  const api::ServerConfig& config = catalog.server;
+HttpOptions http_options(const ServerConfig& config, const api::Limits& limits) {
   HttpOptions http;
   http.host = config.host;
   http.port = config.port;
-  http.body_bytes = catalog.limits.body_bytes;
+  http.body_bytes = limits.body_bytes;
   // What may take long is bounded by places of its own: http_threads are left for all else.
   http.threads =
       config.http_threads + config.waiting_requests + config.event_streams + config.transfers;
@@ -95,42 +107,41 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   ::mallopt(M_TRIM_THRESHOLD, 1 << 20);
   prepare_image_codecs();
-  const api::Catalog catalog = configured(options);
-  set_up_log(catalog.server.log_format);
-  AccessPolicy policy = access_policy(catalog.server);
+  const auto [catalog, config] = configured(options);
+  set_up_log(config.log_format);
+  AccessPolicy policy = access_policy(config);
   const ColorConfig colors(catalog.display_config);
-  const DataFolder folder(catalog.server.data_folder);
+  const DataFolder folder(config.data_folder);
   StoreOptions queue;
-  queue.most_queued = catalog.server.queue_length;
-  queue.interactive_seconds = catalog.server.interactive_seconds;
+  queue.most_queued = config.queue_length;
+  queue.interactive_seconds = config.interactive_seconds;
   const auto store = open_job_store(folder.store_file(), queue);
   ArtifactStore artifacts(folder.artifacts());
   Metrics metrics;
   metrics.set_store_gauges([&] { return gauges_of(store->gauges()); });
-  JobService service(catalog, colors, *store, artifacts, metrics);
-  Endpoints endpoints{service, catalog, colors};
+  JobService service(catalog, config, colors, *store, artifacts, metrics);
+  CallContext context(service, catalog, colors, config);
   Front front(std::move(policy), metrics,
-              [&](const HttpRequest& request) { return respond(endpoints, request); });
-  HttpServer server(front.handlers(), http_options(catalog));
+              [&](const HttpRequest& request) { return respond(context, request); });
+  HttpServer server(front.handlers(), http_options(config, catalog.limits));
 
   std::jthread http([&] { server.run(); });
   while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  const std::string& host = catalog.server.host;
+  const std::string& host = config.host;
   std::cout << "listening on http://" << (host.find(':') == host.npos ? host : '[' + host + ']')
             << ':' << server.port() << std::endl;
 
   signal.wait(0);
   spdlog::info("signal {}: shutting down", signal.load());
   const Watchdog watchdog(longest_drain);
-  service.shut_down(std::chrono::seconds(catalog.server.drain_s));
+  service.shut_down(std::chrono::seconds(config.drain_s));
   server.stop();
   http.join();
   return 0;
 }
 
-}  // namespace
-
-int run_serve(const ServeOptions& options) {
+/// One line on standard output says where it serves, once it is ready.
+int serve(const ServeOptions& options) {
   std::atomic<int> signal = 0;
   const SignalWatch watch([&](int received) {
     signal = received;
@@ -142,6 +153,24 @@ int run_serve(const ServeOptions& options) {
     std::cerr << error.what() << '\n';
     return exit_failure;
   }
+}
+
+}  // namespace
+
+Verb add_serve(CLI::App& app) {
+  const auto options = std::make_shared<ServeOptions>();
+  CLI::App* verb = app.add_subcommand("serve", "Serves renders over HTTP");
+  verb->add_option("--config", options->config, "Another service.json");
+  verb->add_option("--host", options->host, "Address to listen on");
+  verb->add_option("--port", options->port, "Port to listen on; 0: any free one")
+      ->check(CLI::Range(0, 65535));
+  verb->add_option("--data", options->data, "Folder of the queue and the pictures");
+  verb->add_option("--tokens", options->tokens, "File of the tokens that open the service");
+  verb->add_option("--threads", options->threads, "Threads for each render; 0: all cores")
+      ->check(CLI::Range(0, 4096));
+  verb->add_option("--workers", options->workers, "Renders traced at once")
+      ->check(CLI::Range(1, 1024));
+  return {verb, [options] { return serve(*options); }};
 }
 
 }  // namespace translucube::server

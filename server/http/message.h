@@ -30,6 +30,12 @@ struct HttpRequest {
     const auto it = headers.find(lower_case_name);
     return it == headers.end() ? std::string_view() : std::string_view(it->second);
   }
+  /// The value of a query parameter; the first, should it be there twice.
+  std::optional<std::string> parameter(std::string_view name) const {
+    for (const auto& [key, value] : query)
+      if (key == name) return value;
+    return std::nullopt;
+  }
 };
 
 /// A part of a file, sent without reading it whole.

@@ -2,24 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <vector>
+
+#include "api/base/text.h"
 
 namespace translucube::server {
 namespace {
+
+using api::lower_case;
+using api::number_of;
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   return text;
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
 }
 
 /// Splits at a separator outside of quoted strings.
@@ -40,20 +36,12 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
-template <typename Number>
-std::optional<Number> number(std::string_view text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 /// The q parameter of a media range; a value that is none counts as 0.
 double quality_of(const std::vector<std::string_view>& parts) {
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const std::size_t equals = parts[i].find('=');
-    if (equals == parts[i].npos || lower(trimmed(parts[i].substr(0, equals))) != "q") continue;
-    const double q = number<double>(trimmed(parts[i].substr(equals + 1))).value_or(0);
+    if (equals == parts[i].npos || lower_case(trimmed(parts[i].substr(0, equals))) != "q") continue;
+    const double q = number_of<double>(trimmed(parts[i].substr(equals + 1))).value_or(0);
     return q >= 0 && q <= 1 ? q : 0;
   }
   return 1;
@@ -66,32 +54,29 @@ int specificity(const std::string& range, std::string_view mime) {
   return range == "*/*" || range == "*" ? 1 : 0;
 }
 
-constexpr std::array formats{ImageFormat::png, ImageFormat::exr, ImageFormat::tiff,
-                             ImageFormat::jpeg};
-
 }  // namespace
 
 std::optional<ImageFormat> negotiate_image(std::string_view accept) {
-  if (trimmed(accept).empty()) return formats[0];
-  std::array<double, formats.size()> quality{};
-  std::array<int, formats.size()> matched{};
+  if (trimmed(accept).empty()) return image_formats[0].format;
+  std::array<double, image_formats.size()> quality{};
+  std::array<int, image_formats.size()> matched{};
   for (const std::string_view item : split(accept, ',')) {
     const std::vector<std::string_view> parts = split(item, ';');
-    const std::string range = lower(parts[0]);
-    for (std::size_t i = 0; i < formats.size(); ++i) {
-      const int match = specificity(range, mime_type(formats[i]));
+    const std::string range = lower_case(parts[0]);
+    for (std::size_t i = 0; i < image_formats.size(); ++i) {
+      const int match = specificity(range, image_formats[i].mime_type);
       if (match == 0 || match < matched[i]) continue;
       matched[i] = match;
       quality[i] = quality_of(parts);
     }
   }
-  const auto best = std::ranges::max_element(quality) - quality.begin();
-  if (!(quality[static_cast<std::size_t>(best)] > 0)) return std::nullopt;
-  return formats[static_cast<std::size_t>(best)];
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(quality) - quality.begin());
+  if (!(quality[best] > 0)) return std::nullopt;
+  return image_formats[best].format;
 }
 
 bool is_json(std::string_view content_type) {
-  return lower(split(content_type, ';')[0]) == "application/json";
+  return lower_case(split(content_type, ';')[0]) == "application/json";
 }
 
 bool etag_matches(std::string_view if_none_match, std::string_view etag) {
@@ -109,12 +94,12 @@ std::optional<int> preferred_wait(std::string_view prefer) {
   for (const std::string_view item : split(prefer, ',')) {
     const std::string_view preference = split(item, ';')[0];
     const std::size_t equals = preference.find('=');
-    if (equals == preference.npos || lower(trimmed(preference.substr(0, equals))) != "wait")
+    if (equals == preference.npos || lower_case(trimmed(preference.substr(0, equals))) != "wait")
       continue;
     std::string_view value = trimmed(preference.substr(equals + 1));
     if (value.size() >= 2 && value.front() == '"' && value.back() == '"')
       value = value.substr(1, value.size() - 2);
-    const std::optional<int> seconds = number<int>(value);
+    const std::optional<int> seconds = number_of<int>(value);
     return seconds && *seconds >= 0 ? seconds : std::nullopt;
   }
   return std::nullopt;
@@ -123,15 +108,15 @@ std::optional<int> preferred_wait(std::string_view prefer) {
 std::variant<WholeBody, ByteRange, UnsatisfiableRange> requested_range(std::string_view range,
                                                                        std::uint64_t size) {
   const std::size_t equals = range.find('=');
-  if (equals == range.npos || lower(trimmed(range.substr(0, equals))) != "bytes")
+  if (equals == range.npos || lower_case(trimmed(range.substr(0, equals))) != "bytes")
     return WholeBody{};
   const std::string_view spec = trimmed(range.substr(equals + 1));
   const std::size_t dash = spec.find('-');
   if (dash == spec.npos || spec.find(',') != spec.npos) return WholeBody{};
   const std::string_view first_text = trimmed(spec.substr(0, dash));
   const std::string_view last_text = trimmed(spec.substr(dash + 1));
-  const auto first = number<std::uint64_t>(first_text);
-  const auto last = number<std::uint64_t>(last_text);
+  const auto first = number_of<std::uint64_t>(first_text);
+  const auto last = number_of<std::uint64_t>(last_text);
   if ((!first && !first_text.empty()) || (!last && !last_text.empty())) return WholeBody{};
   if (!first && !last) return WholeBody{};
 
@@ -146,7 +131,7 @@ std::variant<WholeBody, ByteRange, UnsatisfiableRange> requested_range(std::stri
 }
 
 std::uint64_t last_event_id(std::string_view text) {
-  return number<std::uint64_t>(text).value_or(0);
+  return number_of<std::uint64_t>(text).value_or(0);
 }
 
 bool is_idempotency_key(std::string_view text) {

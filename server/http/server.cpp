@@ -10,6 +10,7 @@
 #include <random>
 #include <span>
 
+#include "api/base/text.h"
 #include "server/base/ids.h"
 #include "server/http/exchange.h"
 #include "server/http/problems.h"
@@ -56,10 +57,7 @@ void begin(const httplib::Request& request) {
   HttpRequest plain{request.method, request.path, {}, {}, {}};
   for (const auto& [name, value] : request.params) plain.query.emplace_back(name, value);
   for (const auto& [name, value] : request.headers) {
-    std::string lower = name;
-    std::ranges::transform(lower, lower.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const auto [it, fresh] = plain.headers.emplace(lower, value);
+    const auto [it, fresh] = plain.headers.emplace(api::lower_case(name), value);
     if (!fresh) it->second += ", " + value;
   }
   const std::string given = request.get_header_value(request_id_header);

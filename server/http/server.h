@@ -1,5 +1,9 @@
 #pragma once
 
+// The room of HTTP: sockets to plain requests, plain answers to sockets, whatever clients send. The
+// library, httplib, is known to server.cpp, exchange.* and socket_server.* alone; what a request
+// means is told in server/calls.
+
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -47,7 +51,7 @@ struct HttpHandlers {
   std::function<void(const RequestRecord&)> done = [](const RequestRecord&) {};
 };
 
-/// HTTP on a TCP port. Only the files routes*.cpp include httplib.
+/// HTTP on a TCP port.
 class HttpServer {
  public:
   /// Binds; connections queue up from here on. Throws ListenError if the port cannot be had.

@@ -1,13 +1,14 @@
 #pragma once
 
-// Between HTTP's wire form and ours; templates over the library's request, which only routes.cpp
-// knows.
+// Between HTTP's wire form and ours; templates over the library's request, which only server.cpp,
+// exchange.* and socket_server.* know.
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "api/base/text.h"
 
 namespace translucube::server {
 
@@ -40,10 +41,9 @@ BodyAnnouncement announced_body(const Request& request) {
     return {BodyAnnouncement::Kind::present, 0};
   }
   const std::string text = request.get_header_value("Content-Length");
-  std::uint64_t length = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
-  if (error != std::errc() || end != text.data() + text.size() || text.empty()) return malformed;
-  return {length > 0 ? BodyAnnouncement::Kind::present : BodyAnnouncement::Kind::none, length};
+  const auto length = api::number_of<std::uint64_t>(text);
+  if (!length) return malformed;
+  return {*length > 0 ? BodyAnnouncement::Kind::present : BodyAnnouncement::Kind::none, *length};
 }
 
 }  // namespace translucube::server

@@ -41,16 +41,17 @@ std::string list_of(const auto& items, const auto& name_of) {
 }  // namespace
 
 std::string form_name(const ImageForm& form) {
-  const std::string format(name(form.format));
-  if (form.format == ImageFormat::exr) return escaped(form.colorspace) + ".exr";
-  return escaped(form.display) + '-' + escaped(form.view) + '.' + format;
+  const std::string look = is_scene_linear(form.format)
+                               ? escaped(form.colorspace)
+                               : escaped(form.display) + '-' + escaped(form.view);
+  return look + std::string(row_of(form.format).extension);
 }
 
 Result<ImageForm> image_form(const ImageQuery& query, const std::vector<Display>& displays) {
   Problem problem{ProblemCode::invalid_request, "A query parameter is not valid.", {}};
   ImageForm form;
   form.format = query.format;
-  if (query.format == ImageFormat::exr) {
+  if (is_scene_linear(query.format)) {
     form.colorspace = query.colorspace.value_or(std::string(colorspaces[0]));
     if (std::ranges::find(colorspaces, form.colorspace) == colorspaces.end())
       problem.faults.push_back(
@@ -80,7 +81,7 @@ Result<ImageForm> image_form(const ImageQuery& query, const std::vector<Display>
 void write_form(const std::filesystem::path& file, Image image, const ImageForm& form,
                 const ColorConfig& colors, const std::string& canonical_request) {
   ImageMetadata metadata{canonical_request, form.colorspace};
-  if (form.format == ImageFormat::exr) {
+  if (is_scene_linear(form.format)) {
     if (form.colorspace != colorspaces[0]) colors.apply_colorspace(image, form.colorspace);
   } else {
     colors.apply_display(image, form.display, form.view);

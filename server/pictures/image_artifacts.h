@@ -22,8 +22,8 @@
 
 namespace translucube::server {
 
-/// Which form of a render's image. EXR is scene-linear in a colorspace; the others are made for a
-/// display and a view.
+/// Which form of a render's image: scene-linear formats are in a colorspace, the others are made
+/// for a display and a view.
 struct ImageQuery {
   ImageFormat format = ImageFormat::png;
   std::optional<std::string> display, view, colorspace;

@@ -4,22 +4,24 @@
 
 namespace translucube::server {
 
-JobService::JobService(const api::Catalog& catalog, const ColorConfig& colors, JobStore& store,
-                       ArtifactStore& artifacts, Metrics& metrics, Engine engine)
+JobService::JobService(const api::Catalog& catalog, const ServerConfig& config,
+                       const ColorConfig& colors, JobStore& store, ArtifactStore& artifacts,
+                       Metrics& metrics, Engine engine)
     : catalog_(catalog),
+      config_(config),
       store_(store),
       metrics_(metrics),
       janitor_(store, artifacts),
       probe_(store, artifacts),
       live_films_([this] { changes_.tell(); }),
-      explorables_(catalog.server.explorable_memory_bytes),
+      explorables_(config.explorable_memory_bytes),
       darkroom_{catalog, colors, store, artifacts, metrics, explorables_} {
   janitor_.clean_up();
   workers_ = std::make_unique<WorkerPool>(
       Workshop{catalog, store, artifacts, metrics, live_films_, explorables_, std::move(engine),
-               catalog.server.threads_per_worker},
-      catalog.server.workers, [this] {
-        if (janitor_.keep_within(catalog_.server.artifact_bytes)) pictures_.forget();
+               config.threads_per_worker},
+      config.workers, [this] {
+        if (janitor_.keep_within(config_.artifact_bytes)) pictures_.forget();
         changes_.tell();
       });
 }

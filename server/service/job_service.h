@@ -18,6 +18,7 @@
 #include "picture/color.h"
 #include "server/base/ids.h"
 #include "server/base/recent.h"
+#include "server/base/server_config.h"
 #include "server/pictures/explorable_cache.h"
 #include "server/pictures/image_artifacts.h"
 #include "server/pictures/live_films.h"
@@ -62,11 +63,12 @@ struct SweepPage {
 };
 
 /// Accepts, reports, cancels and removes renders and sweeps, and owns the workers that trace them.
-/// Safe to share by threads. The catalog, colours, stores and metrics outlive it.
+/// Safe to share by threads. The catalog, config, colours, stores and metrics outlive it.
 class JobService {
  public:
-  JobService(const api::Catalog& catalog, const ColorConfig& colors, JobStore& store,
-             ArtifactStore& artifacts, Metrics& metrics, Engine engine = renderer_engine());
+  JobService(const api::Catalog& catalog, const ServerConfig& config, const ColorConfig& colors,
+             JobStore& store, ArtifactStore& artifacts, Metrics& metrics,
+             Engine engine = renderer_engine());
   ~JobService();
 
   // Renders (renders.cpp).
@@ -126,6 +128,7 @@ class JobService {
   void discard(const std::vector<StoredResult>& unused);
 
   const api::Catalog& catalog_;
+  const ServerConfig& config_;
   JobStore& store_;
   Metrics& metrics_;
   Changes changes_;

@@ -1,6 +1,5 @@
-#include <charconv>
-
-#include "api/request/parse.h"
+#include "api/base/text.h"
+#include "api/request/canonical.h"
 #include "api/request/sweep.h"
 #include "server/pictures/sheet_artifact.h"
 #include "server/service/answers.h"
@@ -126,16 +125,14 @@ Result<ImageFile> JobService::point_image(const std::string& id, const std::stri
   return guarded([&]() -> Result<ImageFile> {
     const std::optional<StoredSweep> stored = store_.find_sweep(id);
     if (!stored) return no_such_sweep();
-    std::uint32_t number = 0;
-    const auto [end, error] = std::from_chars(point.data(), point.data() + point.size(), number);
-    const bool whole = error == std::errc() && end == point.data() + point.size();
-    const auto picture = whole ? store_.picture_of_point(id, number) : std::nullopt;
+    const auto number = api::number_of<std::uint32_t>(point);
+    const auto picture = number ? store_.picture_of_point(id, *number) : std::nullopt;
     if (!picture) return Problem{ProblemCode::not_found, "The sweep has no such point.", {}};
     if (auto problem = no_picture(picture->state)) return std::move(*problem);
     const auto sweep = submitted_sweep(stored->request, catalog_);
     if (!sweep) return sweep.problem();
     return image_artifact(darkroom_, picture->content,
-                          api::canonical_json(api::point_request(*sweep, number)), query);
+                          api::canonical_json(api::point_request(*sweep, *number)), query);
   });
 }
 

@@ -1,8 +1,8 @@
 #include "server/store/artifact_store.h"
 
-#include <charconv>
 #include <map>
 
+#include "api/base/text.h"
 #include "renderer/film/film_bytes.h"
 
 namespace translucube::server {
@@ -20,10 +20,7 @@ std::optional<std::uint32_t> number_in(std::string_view name, std::string_view p
   if (name.size() <= prefix.size() + suffix.size()) return std::nullopt;
   name.remove_prefix(prefix.size());
   name.remove_suffix(suffix.size());
-  std::uint32_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
-  return number;
+  return api::number_of<std::uint32_t>(name);
 }
 
 std::vector<fs::path> entries(const fs::path& folder) {

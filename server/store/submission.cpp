@@ -1,5 +1,7 @@
 #include "server/store/submission.h"
 
+#include "api/answer/material_report.h"
+#include "api/request/canonical.h"
 #include "api/request/parse.h"
 #include "server/store/content.h"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <new>
 
+#include "api/request/scene_spec.h"
 #include "api/request/sweep.h"
 #include "server/worker/accept.h"
 #include "server/worker/render_failure.h"
@@ -117,7 +118,7 @@ std::variant<TracedPass, OutOfTime, Stopped> TaskRunner::trace_or_read(const Tas
     const TraceCounters& counters = pass->film.counters;
     workshop_.metrics.count_pass(
         {pass->seconds, counters.camera_samples,
-         counters.flights + counters.boundary_events + counters.connections, counters.nan_samples});
+         counters.flights + counters.boundary_events + counters.light_samples, counters.nan_samples});
   }
   return outcome;
 }

@@ -1,5 +1,6 @@
 #include "server/worker/traced_job.h"
 
+#include "api/request/canonical.h"
 #include "api/request/parse.h"
 
 namespace translucube::server {

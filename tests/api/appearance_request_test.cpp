@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "api/answer/appearance_report.h"
+#include "api/request/scene_spec.h"
 #include "tests/api/fixture.h"
 
 namespace translucube::api {
@@ -26,8 +28,11 @@ std::vector<std::string> faults_of(const std::string& text) {
 
 json answer_to(const std::string& text) {
   const auto request = *parse_appearance_request(text, shipped_catalog());
-  return json::parse(
-      appearance_json(request, measure(request, shipped_catalog(), 1), shipped_catalog()));
+  const Material material =
+      scene_spec(render_request(request, shipped_catalog()), shipped_catalog()).material;
+  const SlabAppearance appearance =
+      slab_appearance(material, request.thickness_mm, request.standard_error, request.seed, 1);
+  return json::parse(appearance_json(request, appearance, shipped_catalog()));
 }
 
 TEST(AppearanceRequest, HasNoOilFilm) {

@@ -1,3 +1,5 @@
+#include "api/request/canonical.h"
+
 #include <nlohmann/json.hpp>
 #include <random>
 

@@ -1,5 +1,7 @@
 #include <nlohmann/json.hpp>
 
+#include "api/answer/material_report.h"
+#include "api/base/config_file.h"
 #include "renderer/film/absorption.h"
 #include "tests/api/fixture.h"
 #include "tests/support/repository.h"
@@ -51,7 +53,6 @@ TEST(Catalog, ShippedConfigurationHasEightAbsorbersAndTwoEnvironments) {
 TEST(Catalog, PathsAreRelativeToTheConfiguration) {
   const auto config = service_json().parent_path();
   EXPECT_EQ(shipped_catalog().display_config, config / "display.ocio");
-  EXPECT_EQ(shipped_catalog().server.data_folder, config.parent_path() / "data");
   EXPECT_EQ(shipped_catalog().environments.at("forest"), config / "environments/forest.exr");
 }
 
@@ -77,24 +78,6 @@ TEST(Catalog, RedGlassIsReddish) {
 
 TEST_F(Configuration, IsReadWhole) {
   config["limits"] = {{"body_bytes", 2048}, {"pixels", 64}, {"samples", 5}, {"seconds", 1.5}};
-  config["server"] = {{"host", "::1"},
-                      {"port", 0},
-                      {"data_folder", "/tmp/x/../y"},
-                      {"workers", 3},
-                      {"threads_per_worker", 2},
-                      {"http_threads", 4},
-                      {"tokens_file", "t.json"},
-                      {"hosts", {"Cube.example"}},
-                      {"origins", {"https://Lab.example"}},
-                      {"waiting_requests", 5},
-                      {"event_streams", 6},
-                      {"transfers", 7},
-                      {"connections", 8},
-                      {"header_timeout_s", 9},
-                      {"idle_timeout_s", 10},
-                      {"transfer_timeout_s", 11},
-                      {"drain_s", 2},
-                      {"log_format", "json"}};
   config["request_defaults"]["image"] = {{"width", 8}, {"height", 8}};
   config["request_defaults"]["quality"] = {{"samples", 4}};
   config["file_folders"] = {"."};
@@ -103,68 +86,9 @@ TEST_F(Configuration, IsReadWhole) {
   EXPECT_EQ(catalog.limits.pixels, 64u);
   EXPECT_EQ(catalog.limits.samples, 5u);
   EXPECT_EQ(catalog.limits.seconds, 1.5);
-  EXPECT_EQ(catalog.server.host, "::1");
-  EXPECT_EQ(catalog.server.port, 0);
-  EXPECT_EQ(catalog.server.data_folder, "/tmp/y");
-  EXPECT_EQ(catalog.server.workers, 3);
-  EXPECT_EQ(catalog.server.threads_per_worker, 2);
-  EXPECT_EQ(catalog.server.http_threads, 4);
-  EXPECT_EQ(catalog.server.tokens_file, folder.path() / "t.json");
-  EXPECT_EQ(catalog.server.hosts, std::vector<std::string>{"cube.example"});
-  EXPECT_EQ(catalog.server.origins, std::vector<std::string>{"https://lab.example"});
-  EXPECT_EQ(catalog.server.waiting_requests, 5);
-  EXPECT_EQ(catalog.server.event_streams, 6);
-  EXPECT_EQ(catalog.server.transfers, 7);
-  EXPECT_EQ(catalog.server.connections, 8);
-  EXPECT_EQ(catalog.server.header_timeout_s, 9);
-  EXPECT_EQ(catalog.server.idle_timeout_s, 10);
-  EXPECT_EQ(catalog.server.transfer_timeout_s, 11);
-  EXPECT_EQ(catalog.server.drain_s, 2);
-  EXPECT_EQ(catalog.server.log_format, LogFormat::json);
   EXPECT_EQ(catalog.defaults.width, 8);
   EXPECT_EQ(catalog.defaults.quality, Quality(SampleTarget{4}));
   EXPECT_EQ(catalog.file_folders, std::vector{folder.path()});
-}
-
-TEST_F(Configuration, TheServersKeysAreChecked) {
-  for (const auto& [key, value, fault] : std::vector<std::tuple<std::string, json, std::string>>{
-           {"tokens_file", 7, "string"},
-           {"hosts", "x", "must be an array"},
-           {"hosts", {"http://x"}, "each must be host or host:port"},
-           {"origins", {"x"}, "each must be http[s]://host[:port]"},
-           {"origins", {"http://x/"}, "each must be http[s]://host[:port]"},
-           {"event_streams", -1, "integer"},
-           {"connections", 0, "integer"},
-           {"log_format", "xml", "must be logfmt or json"},
-           {"log", "json", "unknown key"}}) {
-    config["server"] = {{key, value}};
-    EXPECT_THAT(error(), HasSubstr("/server/" + key + ": ")) << key;
-    EXPECT_THAT(error(), HasSubstr(fault)) << key;
-  }
-}
-
-TEST_F(Configuration, TheShippedServerSectionHoldsTheDefaults) {
-  const ServerConfig& shipped = shipped_catalog().server;
-  const ServerConfig defaults;
-  EXPECT_EQ(shipped.host, defaults.host);
-  EXPECT_EQ(shipped.port, defaults.port);
-  EXPECT_EQ(shipped.threads_per_worker, defaults.threads_per_worker);
-  EXPECT_EQ(shipped.tokens_file, defaults.tokens_file);
-  EXPECT_EQ(shipped.hosts, defaults.hosts);
-  EXPECT_EQ(shipped.origins, defaults.origins);
-  EXPECT_EQ(shipped.http_threads, defaults.http_threads);
-  EXPECT_EQ(shipped.waiting_requests, defaults.waiting_requests);
-  EXPECT_EQ(shipped.event_streams, defaults.event_streams);
-  EXPECT_EQ(shipped.transfers, defaults.transfers);
-  EXPECT_EQ(shipped.connections, defaults.connections);
-  EXPECT_EQ(shipped.header_timeout_s, defaults.header_timeout_s);
-  EXPECT_EQ(shipped.idle_timeout_s, defaults.idle_timeout_s);
-  EXPECT_EQ(shipped.transfer_timeout_s, defaults.transfer_timeout_s);
-  EXPECT_EQ(shipped.drain_s, defaults.drain_s);
-  EXPECT_EQ(shipped.queue_length, defaults.queue_length);
-  EXPECT_EQ(shipped.interactive_seconds, defaults.interactive_seconds);
-  EXPECT_EQ(shipped.artifact_bytes, defaults.artifact_bytes);
-  EXPECT_EQ(shipped.log_format, defaults.log_format);
 }
 
 void expect_documented(const json& value, const std::string& path, const std::string& document) {
@@ -183,22 +107,23 @@ TEST_F(Configuration, EveryKeyOfTheShippedFileIsDocumented) {
   expect_documented(config, "", {std::istreambuf_iterator<char>(file), {}});
 }
 
-TEST_F(Configuration, ServerAndLimitsHaveDefaults) {
+TEST_F(Configuration, LimitsHaveDefaultsAndOtherSectionsAreOptional) {
   config.erase("limits");
   config.erase("server");
   config.erase("file_folders");
   const Catalog catalog = load();
-  EXPECT_EQ(catalog.server.port, 8080);
   EXPECT_EQ(catalog.limits.body_bytes, 1u << 20);
-  EXPECT_EQ(catalog.server.data_folder, folder.path().parent_path() / "data");
 }
 
 TEST_F(Configuration, ErrorsNameFilePointerAndReason) {
   config["request_defaults"]["material"]["ior"] = 7;
-  config["server"]["prt"] = 1;
+  config["limits"]["pxels"] = 1;
+  config["sever"] = json::object();
   EXPECT_THAT(error(), HasSubstr((folder.path() / "service.json").string()));
-  EXPECT_THAT(error(), HasSubstr("/server/prt: unknown key"));
-  config["server"].erase("prt");
+  EXPECT_THAT(error(), HasSubstr("/limits/pxels: unknown key"));
+  EXPECT_THAT(error(), HasSubstr("/sever: unknown key"));
+  config["limits"].erase("pxels");
+  config.erase("sever");
   EXPECT_THAT(error(), HasSubstr("/request_defaults/material/ior: must be a number in [1, 4]"));
 }
 

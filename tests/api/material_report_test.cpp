@@ -1,6 +1,9 @@
+#include "api/answer/material_report.h"
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "api/request/scene_spec.h"
 #include "renderer/film/absorption.h"
 #include "renderer/optics/material_cube.h"
 #include "tests/api/fixture.h"

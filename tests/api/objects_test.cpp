@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "api/answer/listings.h"
+#include "api/request/canonical.h"
+#include "api/request/scene_spec.h"
 #include "tests/api/fixture.h"
 
 namespace translucube::api {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "api/request/canonical.h"
 #include "api/request/parse.h"
+#include "api/request/scene_spec.h"
 #include "tests/api/fixture.h"
 #include "tests/support/repository.h"
 

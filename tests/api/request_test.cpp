@@ -1,3 +1,4 @@
+#include "api/request/scene_spec.h"
 #include "tests/api/fixture.h"
 
 namespace translucube::api {

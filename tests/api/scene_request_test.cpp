@@ -1,5 +1,7 @@
 #include <sys/stat.h>
 
+#include "api/request/canonical.h"
+#include "api/request/scene_spec.h"
 #include "tests/api/fixture.h"
 
 namespace translucube::api {

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "api/request/canonical.h"
+#include "api/request/scene_spec.h"
 #include "api/request/sweep.h"
 #include "tests/api/fixture.h"
 

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "api/base/text.h"
 #include "server/calls/access.h"
 #include "server/http/negotiation.h"
 #include "server/http/wire.h"
@@ -37,9 +38,7 @@ void check_range(std::string_view value) {
 void check_access(const Request& request) {
   HttpRequest plain{request.get_header_value("Method"), "/v1/renders", {}, {}, {}};
   for (const auto& [name, value] : request.headers) {
-    std::string lower = name;
-    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    plain.headers.emplace(lower, value);
+    plain.headers.emplace(api::lower_case(name), value);
   }
   AccessPolicy policy{true, {}, {"render.example:8080"}, {"https://page.example"}};
   static_cast<void>(admit(policy, plain));

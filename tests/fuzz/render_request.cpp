@@ -1,6 +1,8 @@
 // The parser of render requests takes any bytes; what it accepts has a canonical form that means
 // the same.
 
+#include "api/answer/material_report.h"
+#include "api/request/canonical.h"
 #include "api/request/parse.h"
 #include "tests/fuzz/requests.h"
 

@@ -1,6 +1,7 @@
 // The parser of sweeps takes any bytes; what it accepts has a canonical form that means the same,
 // and each of its points is traced once.
 
+#include "api/request/canonical.h"
 #include "api/request/parse.h"
 #include "api/request/sweep.h"
 #include "tests/fuzz/requests.h"

@@ -163,7 +163,7 @@ TEST_F(TokensTest, AFileThatIsNotUsableIsRefusedAndSaysWhere) {
 }
 
 TEST_F(TokensTest, ListeningElsewhereNeedsThem) {
-  api::ServerConfig config;
+  ServerConfig config;
   EXPECT_TRUE(access_policy(config).loopback);
   config.host = "0.0.0.0";
   EXPECT_THROW(access_policy(config), TokensError);

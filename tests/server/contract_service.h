@@ -88,14 +88,14 @@ class Caller {
 struct Live {
   Live(Contract& contract, int workers, StoreOptions store = {})
       : service(folder.path(), renderer.engine(), {workers, std::move(store)}),
-        endpoints{service.service, service.catalog, service.colors},
-        served([this](const HttpRequest& request) { return respond(endpoints, request); }),
+        context{service.service, service.catalog, service.colors, service.config},
+        served([this](const HttpRequest& request) { return respond(context, request); }),
         caller(contract, served.port()) {}
 
   TempFolder folder;
   FakeRenderer renderer;
   TestService service;
-  Endpoints endpoints;
+  CallContext context;
   Served served;
   Caller caller;
 };

@@ -20,13 +20,13 @@ struct StreamsUnderTest {
   HttpResponse listen(const std::string& id, const std::string& last = {}) {
     std::map<std::string, std::string> headers;
     if (!last.empty()) headers["last-event-id"] = last;
-    return respond(endpoints, {"GET", "/v1/renders/" + id + "/events", {}, headers, {}});
+    return respond(context, {"GET", "/v1/renders/" + id + "/events", {}, headers, {}});
   }
 
   TempFolder folder;
   FakeRenderer renderer;
   TestService service;
-  Endpoints endpoints{service.service, service.catalog, service.colors};
+  CallContext context{service.service, service.catalog, service.colors, service.config};
 };
 
 std::string whole(const HttpResponse& response) {
@@ -73,7 +73,7 @@ TEST(EventStreamTest, TellsARenderFromItsQueueToItsEnd) {
   EXPECT_EQ(events[2].data["samples"], 4);
   EXPECT_EQ(events.back().data["state"], "succeeded");
   for (std::size_t i = 0; i < events.size(); ++i) EXPECT_EQ(events[i].id, std::to_string(i + 1));
-  EXPECT_EQ(tested.endpoints.streams, 0);
+  EXPECT_EQ(tested.context.streams.free(), tested.service.config.event_streams);
 }
 
 TEST(EventStreamTest, ReplaysWhatCameAfterTheLastEventAlsoAfterARestart) {
@@ -82,19 +82,19 @@ TEST(EventStreamTest, ReplaysWhatCameAfterTheLastEventAlsoAfterARestart) {
   std::string id, before;
   {
     TestService service(folder.path(), renderer.engine());
-    Endpoints endpoints{service.service, service.catalog, service.colors};
+    CallContext context{service.service, service.catalog, service.colors, service.config};
     id = service.wait(service.submit(small_request(16)).id).id;
-    before = whole(respond(endpoints, {"GET", "/v1/renders/" + id + "/events", {}, {}, {}}));
+    before = whole(respond(context, {"GET", "/v1/renders/" + id + "/events", {}, {}, {}}));
   }
   TestService service(folder.path(), renderer.engine());
-  Endpoints endpoints{service.service, service.catalog, service.colors};
+  CallContext context{service.service, service.catalog, service.colors, service.config};
   const auto all = events_in(before);
   const auto rest = events_in(whole(respond(
-      endpoints, {"GET", "/v1/renders/" + id + "/events", {}, {{"last-event-id", "2"}}, {}})));
+      context, {"GET", "/v1/renders/" + id + "/events", {}, {{"last-event-id", "2"}}, {}})));
   ASSERT_EQ(rest.size() + 2, all.size());
   for (std::size_t i = 0; i < rest.size(); ++i) EXPECT_EQ(rest[i].data, all[i + 2].data);
   const HttpResponse nothing =
-      respond(endpoints,
+      respond(context,
               {"GET", "/v1/renders/" + id + "/events", {}, {{"last-event-id", all.back().id}}, {}});
   EXPECT_EQ(nothing.status, 204) << "a browser does not come again";
 }
@@ -102,7 +102,7 @@ TEST(EventStreamTest, ReplaysWhatCameAfterTheLastEventAlsoAfterARestart) {
 TEST(EventStreamTest, SlotsAreBoundedAndGivenBack) {
   StreamsUnderTest tested(0);
   const std::string id = tested.service.submit(small_request(4)).id;
-  tested.endpoints.streams = tested.service.catalog.server.event_streams - 1;
+  const auto crowd = take_all_but(1, tested.context.streams);
   {
     const HttpResponse taken = tested.listen(id);
     EXPECT_EQ(taken.status, 200);
@@ -130,7 +130,7 @@ TEST(LongPollTest, AnswersWhenTheStatusIsNoLongerTheKnownOne) {
   StreamsUnderTest tested(0);
   const std::string id = tested.service.submit(small_request(4)).id;
   const auto get = [&](const std::string& wait, const std::string& etag) {
-    return respond(tested.endpoints,
+    return respond(tested.context,
                    {"GET", "/v1/renders/" + id, {{"wait", wait}}, {{"if-none-match", etag}}, {}});
   };
   const HttpResponse first = get("0", "");

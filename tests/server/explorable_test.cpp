@@ -39,8 +39,8 @@ class Explored {
     return read_image(folder_ / "picture.exr").pixels;
   }
   HttpResponse get(const std::string& id, std::vector<std::pair<std::string, std::string>> query) {
-    Endpoints endpoints{service_.service, service_.catalog, service_.colors};
-    return respond(endpoints, {"GET", "/v1/renders/" + id + "/image", std::move(query), {}, {}});
+    CallContext context{service_.service, service_.catalog, service_.colors, service_.config};
+    return respond(context, {"GET", "/v1/renders/" + id + "/image", std::move(query), {}, {}});
   }
 
  private:

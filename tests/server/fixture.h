@@ -12,10 +12,13 @@
 #include <string>
 #include <thread>
 
+#include "api/base/config_file.h"
 #include "api/request/catalog.h"
 #include "picture/color.h"
 #include "renderer/film/film_error.h"
 #include "server/base/file.h"
+#include "server/base/places.h"
+#include "server/base/server_config.h"
 #include "server/service/job_service.h"
 #include "server/store/artifact_store.h"
 #include "server/store/data_folder.h"
@@ -117,13 +120,14 @@ struct ServiceOptions {
 class TestService {
  public:
   TestService(const std::filesystem::path& folder, Engine engine, ServiceOptions options = {})
-      : catalog(configured(options)),
+      : catalog(api::load_catalog(config_path)),
+        config(configured(options)),
         colors(catalog.display_config),
         data(folder),
         own_store(open_job_store(data.store_file(), options.store)),
         store(*own_store),
         artifacts(data.artifacts()),
-        service(catalog, colors, store, artifacts, metrics, std::move(engine)) {}
+        service(catalog, config, colors, store, artifacts, metrics, std::move(engine)) {}
 
   api::RenderStatus submit(const std::string& document, std::optional<std::string> key = {}) {
     auto result = service.submit(document, key);
@@ -165,6 +169,7 @@ class TestService {
   std::string content(const std::string& id) { return store.pictures(id).at(0).content; }
 
   api::Catalog catalog;
+  ServerConfig config;
   ColorConfig colors;
   DataFolder data;
   std::unique_ptr<JobStore> own_store;
@@ -174,13 +179,21 @@ class TestService {
   JobService service;
 
  private:
-  static api::Catalog configured(const ServiceOptions& options) {
-    api::Catalog catalog = api::load_catalog(config_path);
-    catalog.server.workers = options.workers;
-    catalog.server.threads_per_worker = 1;
-    return catalog;
+  static ServerConfig configured(const ServiceOptions& options) {
+    api::ConfigFile file(config_path);
+    ServerConfig config = read_server_config(file);
+    config.workers = options.workers;
+    config.threads_per_worker = 1;
+    return config;
   }
 };
+
+/// Takes places until so many are left; they are given back with what this gives.
+inline std::vector<Places::Place> take_all_but(int left, Places& places) {
+  std::vector<Places::Place> taken;
+  while (places.free() > left) taken.push_back(places.take());
+  return taken;
+}
 
 /// Waits until `done`, or for long even on a busy machine under a sanitizer; says which.
 inline bool eventually(const std::function<bool()>& done) {

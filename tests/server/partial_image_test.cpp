@@ -39,10 +39,10 @@ Engine around_passes(std::function<std::optional<PassFilm>(const Pass&, const Tr
 struct PartialUnderTest {
   explicit PartialUnderTest(Engine engine)
       : service(folder.path(), std::move(engine)),
-        endpoints{service.service, service.catalog, service.colors} {}
+        context{service.service, service.catalog, service.colors, service.config} {}
 
   HttpResponse get(const std::string& id, Query query) {
-    return respond(endpoints, {"GET", "/v1/renders/" + id + "/image", std::move(query), {}, {}});
+    return respond(context, {"GET", "/v1/renders/" + id + "/image", std::move(query), {}, {}});
   }
   std::string exr(const std::string& id, Query query = {}) {
     query.emplace_back("format", "exr");
@@ -57,7 +57,7 @@ struct PartialUnderTest {
 
   TempFolder folder;
   TestService service;
-  Endpoints endpoints;
+  CallContext context;
 };
 
 TEST(PartialImageTest, ARenderIsSeenFromItsFirstPassOn) {
@@ -114,7 +114,7 @@ TEST(PartialImageTest, TheEventStreamSaysThatThereIsMoreToSee) {
   PartialUnderTest tested(renderer.engine());
   const std::string id = tested.service.submit(small_request(8)).id;
   const HttpResponse response =
-      respond(tested.endpoints, {"GET", "/v1/renders/" + id + "/events", {}, {}, {}});
+      respond(tested.context, {"GET", "/v1/renders/" + id + "/events", {}, {}, {}});
   const EventStream& stream = std::get<EventStream>(response.body);
   std::string text;
   gate.open = 1;

@@ -1,6 +1,6 @@
 #pragma once
 
-// A server with everything but the service behind it: endpoints of a few lines.
+// A server with everything but the service behind it: calls of a few lines.
 
 #include <gmock/gmock.h>
 

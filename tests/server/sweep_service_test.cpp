@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "api/request/parse.h"
+#include "api/request/canonical.h"
 #include "api/request/sweep.h"
 #include "tests/server/fixture.h"
 
@@ -293,7 +293,7 @@ TEST(SweepServiceTest, TheLeastRecentlyUsedPicturesMakeRoom) {
   for (int seed = 1; seed <= 6; ++seed)
     ids.push_back(tested.service.wait(tested.service.submit(small_request(4, seed)).id).id);
   const std::uint64_t all = tested.service.store.result_bytes();
-  tested.service.catalog.server.artifact_bytes = all;
+  tested.service.config.artifact_bytes = all;
   ids.push_back(tested.service.wait(tested.service.submit(small_request(4, 7)).id).id);
   ASSERT_TRUE(eventually([&] { return tested.service.store.result_bytes() <= all; }));
   const auto first = tested.service.service.image(ids.front(), {});

@@ -18,7 +18,7 @@ using testing::StartsWith;
 
 struct WebUnderTest {
   HttpResponse get(const std::string& path, std::map<std::string, std::string> headers = {}) {
-    return respond(endpoints, {"GET", path, {}, std::move(headers), {}});
+    return respond(context, {"GET", path, {}, std::move(headers), {}});
   }
   static std::string header(const HttpResponse& response, const std::string& name) {
     for (const auto& [key, value] : response.headers)
@@ -29,7 +29,7 @@ struct WebUnderTest {
   TempFolder folder;
   FakeRenderer renderer;
   TestService service{folder.path(), renderer.engine(), {0, {}}};
-  Endpoints endpoints{service.service, service.catalog, service.colors};
+  CallContext context{service.service, service.catalog, service.colors, service.config};
 };
 
 std::set<std::string> matches(std::string_view text, const char* pattern) {
@@ -61,7 +61,7 @@ TEST(WebTest, ThePageAndItsFilesHaveTheirTypesAndAPolicy) {
   }
   EXPECT_EQ(tested.get("/web/none.js").status, 404);
   EXPECT_EQ(tested.get("/web/").status, 404);
-  EXPECT_EQ(respond(tested.endpoints, {"POST", "/", {}, {}, {}}).status, 405);
+  EXPECT_EQ(respond(tested.context, {"POST", "/", {}, {}, {}}).status, 405);
 }
 
 TEST(WebTest, WhatThePageLoadsIsThere) {

@@ -52,7 +52,7 @@ TEST(Haze, OfTwoFacesOfLowRoughnessIsTheGgxTail) {
       slope[1] += tangent * std::sin(phi);
     }
     const double turned = 0.5 * std::hypot(slope[0], slope[1]);
-    wide += turned > std::tan(ring_half_angle_deg * std::numbers::pi / 180);
+    wide += turned > std::tan(slab::ring_half_angle_deg * std::numbers::pi / 180);
   }
   const double expected = static_cast<double>(wide) / n;
   EXPECT_NEAR(s.haze->value / expected, 1, 0.02) << s.haze->standard_error;

@@ -48,22 +48,22 @@ TEST(Jumps, AgreeWithTheAnalogWalk) {
   // Thick enough for jumps, thin enough for walking; lengths are compared through absorption.
   for (const double g : {0.0, 0.8, -0.5}) {
     const double sigma_s = 200 / (1 - g);
-    const SlabBody body{SmoothInterface{1.5}, ScatteringInterior{Medium{sigma_s, g}}, 0};
+    const slab::Body body{SmoothInterface{1.5}, ScatteringInterior{Medium{sigma_s, g}}, 0};
     constexpr double peak = 1;  // 1 / thickness
     constexpr std::uint64_t n = 8'000;
-    SlabTally jumped(peak), walked(peak);
-    walk_slab(body, Incidence::diffuse, 1, 0, 4 * n, jumped);
-    walk_slab_analog(body, Incidence::diffuse, 2, 0, n, walked);
+    slab::Tally jumped(peak), walked(peak);
+    slab::walk(body, slab::Incidence::diffuse, 1, 0, 4 * n, jumped);
+    slab::walk_analog(body, slab::Incidence::diffuse, 2, 0, n, walked);
     for (const double sigma_a : {0.0, 0.001, 0.01, 0.1, 1.0})
-      for (const SlabExit exit : {SlabExit::reflected, SlabExit::wide}) {
+      for (const slab::Exit exit : {slab::Exit::reflected, slab::Exit::wide}) {
         double with = 0, without = 0;
-        for (std::size_t node = 0; node < SlabTally::nodes; ++node) {
-          const double left = std::exp(-sigma_a * SlabTally::depth_at(node));
+        for (std::size_t node = 0; node < slab::Tally::nodes; ++node) {
+          const double left = std::exp(-sigma_a * slab::Tally::depth_at(node));
           with += jumped.weights(exit)[node] * left / (4 * n);
           without += walked.weights(exit)[node] * left / n;
         }
         // Each history brings at most about 1: a generous bound on its spread.
-        const double share = exit == SlabExit::reflected ? 1 - without : without;
+        const double share = exit == slab::Exit::reflected ? 1 - without : without;
         const double error = std::sqrt(std::fmax(share, 1e-4) * (1 + 1.0 / 4) / n);
         EXPECT_NEAR(with, without, 4 * error) << "g " << g << " sigma_a " << sigma_a;
       }

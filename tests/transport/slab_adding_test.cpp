@@ -11,25 +11,25 @@
 namespace translucube::test {
 namespace {
 
-struct Body {
-  SlabChannels channels;
-  SlabBody body;
+struct Measured {
+  slab::Channels channels;
+  slab::Body body;
 
-  explicit Body(const Material& m)
-      : channels(slab_channels(m, 1)),
+  explicit Measured(const Material& m)
+      : channels(slab::make_channels(m, 1)),
         body{make_interface(m), make_interior(m, 1), channels.sigma_a[0]} {}
 };
 
 /// By walks without jumps, of so many histories.
-Readings walked(const Body& b, Incidence incidence, std::uint64_t histories) {
+slab::Readings walked(const Measured& b, slab::Incidence incidence, std::uint64_t histories) {
   constexpr int replicates = 32;
   const double sigma_a = b.channels.sigma_a[0];
-  Readings readings;
+  slab::Readings readings;
   readings.unwalked = read_unwalked(b.body, incidence, b.channels);
-  SlabDeveloper developer(b.channels, sigma_a);
+  slab::Developer developer(b.channels, sigma_a);
   for (std::uint64_t i = 0; i < replicates; ++i) {
-    SlabTally tally(sigma_a);
-    walk_slab_analog(b.body, incidence, hash_combine(77, i), 0, histories / replicates, tally);
+    slab::Tally tally(sigma_a);
+    slab::walk_analog(b.body, incidence, hash_combine(77, i), 0, histories / replicates, tally);
     readings.replicates.push_back(
         developer.develop(tally, static_cast<double>(histories / replicates)));
   }
@@ -44,7 +44,7 @@ Material grey(double ior, double alpha, double sigma_s, double sigma_a, double g
 
 /// z of the totals, of haze and of clarity.
 void expect_walks(const Material& m, std::uint64_t histories) {
-  const Body b(m);
+  const Measured b(m);
   const auto added = add_layers(b.body, b.channels, 5e-4, 1, 0);
   ASSERT_TRUE(added);
   const auto compare = [&](const char* what, double a, double a_error, double w, double w_error) {
@@ -52,14 +52,14 @@ void expect_walks(const Material& m, std::uint64_t histories) {
         << what << ", ior " << m.ior << " alpha " << m.coefficients.alpha << " sigma_s "
         << m.coefficients.sigma_s << " g " << m.g;
   };
-  for (const Incidence incidence : {Incidence::normal, Incidence::diffuse}) {
-    const Readings walks = walked(b, incidence, histories);
-    const Readings& sums = added->at[static_cast<int>(incidence)];
+  for (const slab::Incidence incidence : slab::incidences) {
+    const slab::Readings walks = walked(b, incidence, histories);
+    const slab::Readings& sums = added->at[static_cast<int>(incidence)];
     const auto a = optics_of(sums), w = optics_of(walks);
     compare("R", reflectance(a), reflectance_error(a), reflectance(w), reflectance_error(w));
     compare("T", transmittance(a), transmittance_error(a), transmittance(w),
             transmittance_error(w));
-    if (incidence == Incidence::diffuse) continue;
+    if (incidence == slab::Incidence::diffuse) continue;
     const auto haze = haze_of(sums), walked_haze = haze_of(walks);
     ASSERT_TRUE(haze && walked_haze);
     compare("haze", haze->value, haze->standard_error + 5e-4, walked_haze->value,
@@ -83,7 +83,7 @@ TEST(LongAdding, AgreesWithWalks) {
 
 TEST(Adding, LeavesToWalksWhatItDoesNotResolve) {
   const auto adds = [](const Material& m, double error) {
-    const Body b(m);
+    const Measured b(m);
     return add_layers(b.body, b.channels, error, 1, 0).has_value();
   };
   EXPECT_TRUE(adds(grey(1.5, 0, 10, 0.1, 0), 1e-3));

@@ -5,7 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "api/request/canonical.h"
 #include "api/request/parse.h"
+#include "api/request/scene_spec.h"
 #include "api/request/sweep.h"
 #include "renderer/film/film.h"
 #include "renderer/light/environment_cache.h"

@@ -1,0 +1,52 @@
+#pragma once
+
+// The parts of a request, read over their defaults; shared by requests and by the defaults
+// themselves in config/service.json.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "api/base/faults.h"
+#include "api/base/field_reader.h"
+#include "api/request/catalog.h"
+#include "api/request/request.h"
+
+namespace translucube::api {
+
+/// Every integer up to it is exact in double precision, hence in every JSON reader.
+inline constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 53) - 1;
+
+/// A request says where in the cube its material is; the defaults must not.
+enum class MaterialPoint { required, refused };
+
+/// Each reads a JSON value over the defaults that `out` holds; what is missing or wrong stays.
+void read_request(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
+                  MaterialPoint point, RenderRequest& out, Faults& faults);
+/// The same, with all that must hold between the parts.
+void read_whole_request(const nlohmann::json& value, const std::string& pointer,
+                        const Catalog& catalog, RenderRequest& out, Faults& faults);
+void read_material(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
+                   MaterialPoint point, MaterialRequest& out, Faults& faults);
+void read_scene(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
+                RenderRequest& out, Faults& faults);
+
+void read_object(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
+                 ObjectRequest& out, Faults& faults);
+
+/// False, or the object.
+void read_backdrop(const nlohmann::json& value, const std::string& pointer,
+                   std::optional<BackdropSpec>& out, Faults& faults);
+
+/// The name of an absorber, or the absorber itself.
+void read_absorber(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
+                   AbsorberRequest& out, Faults& faults);
+
+/// {"wavelengths_nm": [...], "values": [...]}; both keys are required.
+std::optional<SpectralAbsorber> read_spectrum(FieldReader& object);
+
+/// A file named by a request: its absolute path with symbolic links resolved, if it may be read and
+/// is a regular file. Outside the catalog's folders the fault is the same whether it exists or not.
+std::optional<std::string> resolve_file(const std::string& file, const std::string& pointer,
+                                        const Catalog& catalog, Faults& faults);
+
+}  // namespace translucube::api

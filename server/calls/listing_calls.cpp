@@ -1,0 +1,29 @@
+#include "api/answer/listings.h"
+#include "api/openapi.h"
+#include "server/calls/answers.h"
+
+namespace translucube::server {
+
+HttpResponse get_absorbers(CallContext& context, const HttpRequest& request,
+                           const PathParameters&) {
+  return tagged_json(request, api::absorbers_json(context.catalog));
+}
+
+HttpResponse get_environments(CallContext& context, const HttpRequest& request,
+                              const PathParameters&) {
+  return tagged_json(request, api::environments_json(context.catalog));
+}
+
+HttpResponse get_objects(CallContext& context, const HttpRequest& request, const PathParameters&) {
+  return tagged_json(request, api::objects_json(context.catalog));
+}
+
+HttpResponse get_displays(CallContext& context, const HttpRequest& request, const PathParameters&) {
+  return tagged_json(request, api::displays_json(context.colors.displays()));
+}
+
+HttpResponse get_openapi(CallContext&, const HttpRequest& request, const PathParameters&) {
+  return tagged_json(request, std::string(api::openapi_document()));
+}
+
+}  // namespace translucube::server
