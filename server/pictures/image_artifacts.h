@@ -1,5 +1,9 @@
 #pragma once
 
+// The room of the forms of pictures: what is made of a result, or of a film that is still growing,
+// for whoever asks. It reads the store, and forgets results there that are not whole; tasks, and
+// how light is traced, stay out.
+
 #include <compare>
 #include <memory>
 #include <mutex>

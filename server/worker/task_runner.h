@@ -1,9 +1,5 @@
 #pragma once
 
-// The room of what works on tasks. trace() makes the film of a pass and may run on any machine;
-// accept() merges films in the order of passes and tells the store what follows; TaskRunner leads a
-// task through both, and whatever fails back to the store. Nothing here knows of clients or HTTP.
-
 #include <stop_token>
 #include <string>
 
@@ -12,7 +8,8 @@
 
 namespace translucube::server {
 
-/// Works on claimed tasks, one at a time.
+/// Works on claimed tasks, one at a time: leads them through trace() and accept(), and whatever
+/// fails back to the store.
 class TaskRunner {
  public:
   explicit TaskRunner(Workshop& workshop) : workshop_(workshop) {}

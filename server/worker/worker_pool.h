@@ -1,5 +1,9 @@
 #pragma once
 
+// The room of what works on tasks: they are claimed (WorkerPool), led from one stage to the next
+// (TaskRunner), traced (trace.h, which may run on any machine) and merged (accept.h, which tells
+// the store what follows). Nothing here knows of clients or of the forms of pictures that they see.
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>

@@ -16,6 +16,15 @@ using api::JobState;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+/// The picture of a request whose work nothing disturbs.
+std::string undisturbed(FakeRenderer& renderer, const std::string& request) {
+  const TempFolder folder;
+  TestService tested(folder.path(), renderer.engine());
+  std::string bytes = tested.exr(tested.wait(tested.submit(request).id).id);
+  renderer.passes = renderer.most_tracing = 0;
+  return bytes;
+}
+
 TEST(RenderTaskTest, AJobRunsThroughItsPassesToAnImage) {
   const TempFolder folder;
   FakeRenderer renderer;
@@ -45,14 +54,9 @@ TEST(RenderTaskTest, TheImageCarriesItsCanonicalRequest) {
 }
 
 TEST(RenderTaskTest, ARestartBetweenTasksGoesOnAndGivesTheSameBits) {
-  const TempFolder undisturbed, restarted;
+  const TempFolder restarted;
   FakeRenderer renderer;
-  std::string expected;
-  {
-    TestService tested(undisturbed.path(), renderer.engine());
-    expected = tested.exr(tested.wait(tested.submit(small_request(64)).id).id);
-  }
-  renderer.passes = 0;
+  const std::string expected = undisturbed(renderer, small_request(64));
   std::string id;
   int before = 0;
   {
@@ -82,14 +86,10 @@ TEST(RenderTaskTest, ARestartBetweenTasksGoesOnAndGivesTheSameBits) {
 }
 
 TEST(RenderTaskTest, ALostCheckpointIsTracedAgainToTheSameBits) {
-  const TempFolder undisturbed, damaged;
+  const TempFolder damaged;
   FakeRenderer renderer;
-  std::string expected, id;
-  {
-    TestService tested(undisturbed.path(), renderer.engine());
-    expected = tested.exr(tested.wait(tested.submit(small_request(32)).id).id);
-  }
-  renderer.passes = 0;
+  const std::string expected = undisturbed(renderer, small_request(32));
+  std::string id;
   {
     renderer.milliseconds_per_pass = 20;
     TestService tested(damaged.path(), renderer.engine());
@@ -215,18 +215,13 @@ TEST(RenderTaskTest, AnErrorTargetStopsWhereTheEstimateMeetsIt) {
 }
 
 TEST(RenderTaskTest, APassThatTwoWorkersTraceCountsOnce) {
-  const TempFolder undisturbed, contended;
+  const TempFolder contended;
   FakeRenderer renderer;
-  std::string expected;
-  {
-    TestService tested(undisturbed.path(), renderer.engine());
-    expected = tested.exr(tested.wait(tested.submit(small_request(24)).id).id);
-  }
+  const std::string expected = undisturbed(renderer, small_request(24));
   // In the middle of a pass the clock of the leases jumps an hour ahead: this one has run out, and
   // another worker takes the task while the first one goes on with it.
   std::atomic<std::int64_t> jump = 0;
   std::atomic<bool> jumped = false;
-  renderer.most_tracing = 0;
   renderer.before_pass = [&](const Pass& pass) {
     if (pass.index != 2 || jumped.exchange(true)) return;
     jump = 3'600'000;

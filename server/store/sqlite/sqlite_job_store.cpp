@@ -7,19 +7,18 @@ namespace translucube::server {
 
 using api::JobState;
 using rows::Lock;
-using sql::Connection;
 using sql::Statement;
 using sql::Transaction;
 
 namespace {
 
-constexpr const char* in_memory = ":memory:";
+constexpr const char* memory_location = ":memory:";
 
 /// The file is there, and prepared, once the writer is.
-std::unique_ptr<Connection> open_reader(const std::string& file, Connection& writer) {
+std::unique_ptr<sql::Connection> open_reader(const std::string& file, sql::Connection& writer) {
   prepare_schema(writer, file);
-  if (file == in_memory) return nullptr;
-  return std::make_unique<Connection>(file, Connection::Access::read_only);
+  if (file == memory_location) return nullptr;
+  return std::make_unique<sql::Connection>(file, sql::Connection::Access::read_only);
 }
 
 }  // namespace
@@ -27,7 +26,7 @@ std::unique_ptr<Connection> open_reader(const std::string& file, Connection& wri
 SqliteJobStore::SqliteJobStore(const std::string& file, StoreOptions options)
     : options_(std::move(options)),
       owner_(random_hex(16)),
-      writer_(file, Connection::Access::read_write),
+      writer_(file, sql::Connection::Access::read_write),
       own_reader_(open_reader(file, writer_)),
       reader_(own_reader_ ? *own_reader_ : writer_) {
   Transaction transaction(writer_);
