@@ -20,19 +20,14 @@ void append(std::string& object, const char* key, const std::optional<std::strin
 
 std::string to_json(const RenderStatus& status) {
   const std::string self = "/v1/renders/" + status.id;
-  std::string object = json{{"id", status.id},
-                            {"state", name(status.state)},
-                            {"created_at", status.created_at},
-                            {"started_at", value_or_null(status.started_at)},
-                            {"finished_at", value_or_null(status.finished_at)},
-                            {"progress", progress_object(status.progress)},
-                            {"cached", status.cached},
-                            {"links",
-                             {{"self", self},
-                              {"image", self + "/image"},
-                              {"events", self + "/events"},
-                              {"cancel", self + "/cancel"}}}}
-                           .dump();
+  json members = life_object(status);
+  members["progress"] = progress_object(status.progress);
+  members["cached"] = status.cached;
+  members["links"] = {{"self", self},
+                      {"image", self + "/image"},
+                      {"events", self + "/events"},
+                      {"cancel", self + "/cancel"}};
+  std::string object = members.dump();
   append(object, "request", status.request);
   append(object, "material", status.material);
   append(object, "stats", status.stats);

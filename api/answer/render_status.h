@@ -1,6 +1,7 @@
 #pragma once
 
-// What the service says about a render.
+// The room of answers: what the service and the command line say, as JSON. The values are the
+// caller's; nothing is looked up here. This header: what is said of a render.
 
 #include <optional>
 #include <string>

@@ -68,42 +68,33 @@ std::string to_json(const SweepStatus& status) {
       results.at(point) = result_object(status, image, stats, point);
   }
   const std::string self = link(status.id);
-  return json{{"id", status.id},
-              {"state", name(status.state)},
-              {"created_at", status.created_at},
-              {"started_at", value_or_null(status.started_at)},
-              {"finished_at", value_or_null(status.finished_at)},
-              {"request", parsed(canonical_json(status.sweep), "the request of a sweep")},
-              {"points", status.sweep.point_count()},
-              {"traced_images", status.images.size()},
-              {"counts", counts_object(summary.counts)},
-              {"stats",
-               {{"traced_images", summary.traced},
-                {"cached_images", summary.cached},
-                {"seconds", summary.seconds},
-                {"cpu_seconds", summary.cpu_seconds},
-                {"nan_samples", summary.nan_samples}}},
-              {"results", std::move(results)},
-              {"links",
-               {{"self", self},
-                {"events", self + "/events"},
-                {"cancel", self + "/cancel"},
-                {"sheet", self + "/sheet"}}}}
-      .dump();
+  json object = life_object(status);
+  object["request"] = parsed(canonical_json(status.sweep), "the request of a sweep");
+  object["points"] = status.sweep.point_count();
+  object["traced_images"] = status.images.size();
+  object["counts"] = counts_object(summary.counts);
+  object["stats"] = {{"traced_images", summary.traced},
+                     {"cached_images", summary.cached},
+                     {"seconds", summary.seconds},
+                     {"cpu_seconds", summary.cpu_seconds},
+                     {"nan_samples", summary.nan_samples}};
+  object["results"] = std::move(results);
+  object["links"] = {{"self", self},
+                     {"events", self + "/events"},
+                     {"cancel", self + "/cancel"},
+                     {"sheet", self + "/sheet"}};
+  return object.dump();
 }
 
 std::string sweep_list_json(const std::vector<SweepSummary>& sweeps,
                             const std::optional<std::string>& next_cursor) {
   json list = json::array();
-  for (const SweepSummary& sweep : sweeps)
-    list.push_back({{"id", sweep.id},
-                    {"state", name(sweep.state)},
-                    {"created_at", sweep.created_at},
-                    {"started_at", value_or_null(sweep.started_at)},
-                    {"finished_at", value_or_null(sweep.finished_at)},
-                    {"points", sweep.points},
-                    {"traced_images", sweep.traced_images},
-                    {"links", {{"self", link(sweep.id)}}}});
+  for (const SweepSummary& sweep : sweeps) {
+    json& object = list.emplace_back(life_object(sweep));
+    object["points"] = sweep.points;
+    object["traced_images"] = sweep.traced_images;
+    object["links"] = {{"self", link(sweep.id)}};
+  }
   return json{{"sweeps", std::move(list)}, {"next_cursor", value_or_null(next_cursor)}}.dump();
 }
 

@@ -20,6 +20,10 @@ Problem invalid_request(const Faults& faults) {
   return {ProblemCode::invalid_request, number + " found", faults.list()};
 }
 
+Problem invalid_query(std::vector<Fault> faults) {
+  return {ProblemCode::invalid_request, "A query parameter is not valid.", std::move(faults)};
+}
+
 std::string pointer_token(std::string_view key) {
   constexpr std::size_t longest = 64;
   const bool cut = key.size() > longest;

@@ -28,8 +28,11 @@ class Faults {
   std::size_t count_ = 0;
 };
 
-/// The 422 that tells them all.
+/// The 422 that tells all faults of a document.
 Problem invalid_request(const Faults& faults);
+
+/// The 422 that tells the faults of query parameters, whose pointers are "?name".
+Problem invalid_query(std::vector<Fault> faults);
 
 /// One token of a JSON pointer, escaped (RFC 6901, section 4). A key of more than 64 bytes is cut,
 /// at a character, and ends in "...": keys come from the client.

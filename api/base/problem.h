@@ -60,7 +60,7 @@ struct Problem {
 };
 /// The JSON text. Never echoes a client's document.
 std::string to_json(const Problem& problem);
-/// The same for a terminal: title, detail, then a line "pointer: detail" for each fault.
+/// The text for a terminal: title, detail, then a line "pointer: detail" for each fault.
 std::string to_text(const Problem& problem);
 
 }  // namespace translucube::api

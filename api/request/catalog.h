@@ -44,7 +44,7 @@ struct Catalog {
 Catalog load_catalog(ConfigFile& service_json);
 Catalog load_catalog(const std::filesystem::path& service_json);
 
-/// For what was accepted before: it stays legal, whatever the limits are now.
+/// The catalog for what was accepted before: it stays legal, whatever the limits are now.
 Catalog without_limits(Catalog catalog);
 
 }  // namespace translucube::api

@@ -22,7 +22,7 @@ enum class MaterialPoint { required, refused };
 /// Each reads a JSON value over the defaults that `out` holds; what is missing or wrong stays.
 void read_request(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
                   MaterialPoint point, RenderRequest& out, Faults& faults);
-/// The same, with all that must hold between the parts.
+/// Reads a request and checks what must hold between its parts.
 void read_whole_request(const nlohmann::json& value, const std::string& pointer,
                         const Catalog& catalog, RenderRequest& out, Faults& faults);
 void read_material(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
@@ -33,15 +33,15 @@ void read_scene(const nlohmann::json& value, const std::string& pointer, const C
 void read_object(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
                  ObjectRequest& out, Faults& faults);
 
-/// False, or the object.
+/// The value is false, or the backdrop's object.
 void read_backdrop(const nlohmann::json& value, const std::string& pointer,
                    std::optional<BackdropSpec>& out, Faults& faults);
 
-/// The name of an absorber, or the absorber itself.
+/// The value is the name of an absorber, or the absorber itself.
 void read_absorber(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,
                    AbsorberRequest& out, Faults& faults);
 
-/// {"wavelengths_nm": [...], "values": [...]}; both keys are required.
+/// Reads {"wavelengths_nm": [...], "values": [...]}; both keys are required.
 std::optional<SpectralAbsorber> read_spectrum(FieldReader& object);
 
 /// A file named by a request: its absolute path with symbolic links resolved, if it may be read and

@@ -75,23 +75,24 @@ std::optional<double> absorption_number(std::string_view text) {
 
 Result<Redeveloped> redevelop(std::string_view canonical_request, const Redevelopment& asked,
                               const Catalog& catalog) {
-  Problem problem{ProblemCode::invalid_request, "A query parameter is not valid.", {}};
+  std::vector<Fault> query_faults;
   AbsorberRequest absorber;
   if (asked.absorber) {
     Faults faults;
     absorber = read_asked_absorber(*asked.absorber, catalog, faults);
-    problem.faults = faults.list();
+    query_faults = faults.list();
   }
   if (asked.absorption && !(*asked.absorption >= 0 && *asked.absorption <= 1))
-    problem.faults.push_back({"?absorption", "must be a number in [0, 1]"});
-  if (!problem.faults.empty()) return problem;
+    query_faults.push_back({"?absorption", "must be a number in [0, 1]"});
+  if (!query_faults.empty()) return invalid_query(std::move(query_faults));
 
   json document = json::parse(canonical_request, nullptr, false);
   if (document.is_discarded() || !document.contains("material") ||
       !document.value("explorable", false)) {
-    problem = {ProblemCode::conflict,
-               "Only a render with \"explorable\": true can be developed for another absorber.",
-               {}};
+    Problem problem{
+        ProblemCode::conflict,
+        "Only a render with \"explorable\": true can be developed for another absorber.",
+        {}};
     if (asked.absorption) problem.faults.push_back({"?absorption", "the render is not explorable"});
     if (asked.absorber) problem.faults.push_back({"?absorber", "the render is not explorable"});
     return problem;

@@ -1,6 +1,8 @@
 #pragma once
 
-// The render request as typed values: what a client said, with every default filled in.
+// The room of requests: documents are read strictly (parse.h, sweep.h, appearance_request.h) into
+// the values below, what a client said with every default filled in; these have a canonical form
+// (canonical.h) and a meaning for the renderer (scene_spec.h). No HTTP, and no work is started.
 
 #include <array>
 #include <cstdint>

@@ -38,8 +38,8 @@ std::vector<fs::path> candidates(const fs::path& file, const Catalog& catalog) {
   return places;
 }
 
-/// Without control characters, and UTF-8: a symbolic link may lead to a name that no JSON text can
-/// carry.
+/// Whether the path is UTF-8 without control characters: a symbolic link may lead to a name that no
+/// JSON text can carry.
 bool is_text(const std::string& path) {
   if (std::any_of(path.begin(), path.end(), [](unsigned char c) { return c < 32; })) return false;
   try {

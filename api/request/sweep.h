@@ -49,7 +49,7 @@ std::vector<std::vector<std::size_t>> traced_images(const Sweep& sweep, const Li
 /// parse_render_request, and refuses what `limits` does not allow.
 Result<Sweep> parse_sweep_request(std::string_view text, const Catalog& catalog);
 
-/// As canonical_json for a render: it parses back to the same sweep.
+/// The canonical form, as that of a render (canonical.h): it parses back to the same sweep.
 std::string canonical_json(const Sweep& sweep);
 
 /// What a dry run answers: {"points", "traced_images", "pixels" (of each image), "camera_samples"

@@ -68,7 +68,7 @@ class OpenFile {
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& writer);
 
-/// The same for bytes at hand.
+/// Writes bytes that are at hand, likewise.
 void write_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 /// True for the names that write_atomically uses on the way.

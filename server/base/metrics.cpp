@@ -109,7 +109,7 @@ struct Metrics::Impl {
     Counter& count;
     Histogram& seconds;
   };
-  /// By method, route and status: the registry's own look-up builds texts and hashes them.
+  /// The figures by method, route and status: the registry's look-up builds texts and hashes them.
   std::map<std::tuple<std::string, std::string, int>, OfRequest, std::less<>> of_requests;
   std::mutex of_requests_mutex;
 

@@ -15,7 +15,7 @@ using api::Result;
 
 constexpr std::array<std::string_view, 3> own_names{"localhost", "127.0.0.1", "[::1]"};
 
-/// Without ":port", which may follow a name, an IPv4 address or a bracketed IPv6 one.
+/// The host without ":port", which may follow a name, an IPv4 address or a bracketed IPv6 one.
 std::string_view without_port(std::string_view host) {
   const std::size_t colon = host.rfind(':');
   if (colon == host.npos || host.find(']', colon) != host.npos) return host;
@@ -33,7 +33,7 @@ bool is_our_host(const AccessPolicy& policy, std::string_view given) {
          std::ranges::any_of(policy.hosts, is_it);
 }
 
-/// Of a page of ours, or of no page: browsers send an Origin with each POST of theirs.
+/// Whether a page of ours asks, or no page: browsers send an Origin with each POST of theirs.
 bool is_our_origin(const AccessPolicy& policy, const HttpRequest& request) {
   if (request.headers.contains("origin")) {
     const std::string origin = lower_case(request.header("origin"));

@@ -21,4 +21,8 @@ HttpResponse tagged_json(const HttpRequest& request, const std::string& body,
   return response;
 }
 
+HttpResponse removal_response(const std::optional<api::Problem>& problem) {
+  return problem ? problem_response(*problem) : HttpResponse{204, {}, {}, {}};
+}
+
 }  // namespace translucube::server

@@ -8,7 +8,6 @@
 #include "server/calls/calls.h"
 #include "server/calls/parameters.h"
 #include "server/http/negotiation.h"
-#include "server/http/problems.h"
 
 namespace translucube::server {
 
@@ -18,6 +17,26 @@ HttpResponse json_response(int status, std::string body);
 HttpResponse tagged_json(const HttpRequest& request, const std::string& body);
 HttpResponse tagged_json(const HttpRequest& request, const std::string& body,
                          const std::string& etag);
+
+/// 200 with a status as JSON, or its problem.
+template <typename Status>
+HttpResponse status_response(const api::Result<Status>& status) {
+  if (!status) return problem_response(status.problem());
+  return json_response(200, to_json(*status));
+}
+
+/// 204, or the problem why nothing was removed.
+HttpResponse removal_response(const std::optional<api::Problem>& problem);
+
+/// The page that `list` gives for the query, told by `json`.
+template <typename List, typename Json>
+HttpResponse list_response(const HttpRequest& request, List list, Json json) {
+  const auto query = list_query(request);
+  if (!query) return problem_response(query.problem());
+  const auto page = list(*query);
+  if (!page) return problem_response(page.problem());
+  return tagged_json(request, json(*page));
+}
 
 /// What `get` answers, at once or when `done` is true of its status or the time is over. Without a
 /// place to wait, at once; `waited` then stays false.
@@ -39,7 +58,7 @@ auto answer_after(CallContext& context, int seconds, bool& waited, Get get, Done
 /// What `get` answers, a Result<ToldText>. With `wait`: when it has ended, or is no longer as the
 /// client's If-None-Match knows it.
 template <typename Get>
-HttpResponse status_response(CallContext& context, const HttpRequest& request, Get get) {
+HttpResponse awaited_status(CallContext& context, const HttpRequest& request, Get get) {
   const auto seconds = wait_query(request);
   if (!seconds) return problem_response(seconds.problem());
   const std::string_view known = request.header("if-none-match");

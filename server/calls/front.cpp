@@ -4,7 +4,6 @@
 
 #include "server/base/log.h"
 #include "server/calls/router.h"
-#include "server/http/problems.h"
 
 namespace translucube::server {
 namespace {

@@ -30,7 +30,7 @@ class Front {
   const Respond respond_;
 };
 
-/// For log and metrics: the pattern of a path (/v1/renders/{id}/image), "other" if it has none: a
+/// The pattern of a path (/v1/renders/{id}/image) for log and metrics, "other" if it has none: a
 /// client cannot make up values.
 std::string_view route_of(std::string_view path);
 

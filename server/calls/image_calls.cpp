@@ -1,3 +1,4 @@
+#include "api/base/faults.h"
 #include "server/calls/answers.h"
 
 namespace translucube::server {
@@ -64,7 +65,7 @@ Result<ImageQuery> image_query(const HttpRequest& request) {
   if (const auto text = request.parameter("absorption")) {
     query.redevelopment.absorption = api::absorption_number(*text);
     if (!query.redevelopment.absorption)
-      return bad_parameter("absorption", "must be a number in [0, 1]");
+      return api::invalid_query({{"?absorption", "must be a number in [0, 1]"}});
   }
   const auto format = wanted_format(request);
   if (!format) return Problem{ProblemCode::not_acceptable, what_there_is(), {}};

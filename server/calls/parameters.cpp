@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/base/faults.h"
 #include "api/base/text.h"
 #include "server/base/ids.h"
 #include "server/http/negotiation.h"
@@ -21,12 +22,6 @@ std::optional<int> integer_in(std::string_view text, int low, int high) {
 }
 
 }  // namespace
-
-Problem bad_parameter(std::string_view name, std::string detail) {
-  return {ProblemCode::invalid_request,
-          "A query parameter is not valid.",
-          {{'?' + std::string(name), std::move(detail)}}};
-}
 
 Result<std::optional<std::string>> submission_key(const HttpRequest& request) {
   const std::string_view type = request.header("content-type");
@@ -56,8 +51,7 @@ Result<ListQuery> list_query(const HttpRequest& request) {
     if (!limit) faults.push_back({"?limit", "must be an integer from 1 to 200"});
     query.limit = limit.value_or(default_page);
   }
-  if (!faults.empty())
-    return Problem{ProblemCode::invalid_request, "A query parameter is not valid.", faults};
+  if (!faults.empty()) return api::invalid_query(std::move(faults));
   return query;
 }
 
@@ -65,7 +59,7 @@ Result<int> wait_query(const HttpRequest& request) {
   const auto text = request.parameter("wait");
   if (!text) return 0;
   const auto seconds = integer_in(*text, 0, 1'000'000);
-  if (!seconds) return bad_parameter("wait", "must be a number of seconds, 0 or more");
+  if (!seconds) return api::invalid_query({{"?wait", "must be a number of seconds, 0 or more"}});
   return std::min(*seconds, longest_wait_s);
 }
 
@@ -73,7 +67,7 @@ Result<bool> flag_query(const HttpRequest& request, std::string_view name) {
   const auto text = request.parameter(name);
   if (!text || *text == "false") return false;
   if (*text == "true") return true;
-  return bad_parameter(name, "must be true or false");
+  return api::invalid_query({{'?' + std::string(name), "must be true or false"}});
 }
 
 }  // namespace translucube::server

@@ -13,9 +13,6 @@
 
 namespace translucube::server {
 
-/// The problem of one query parameter.
-api::Problem bad_parameter(std::string_view name, std::string detail);
-
 /// The key of a submission, if it has one. Its body must be JSON.
 api::Result<std::optional<std::string>> submission_key(const HttpRequest& request);
 

@@ -37,28 +37,22 @@ HttpResponse post_render(CallContext& context, const HttpRequest& request, const
 }
 
 HttpResponse list_renders(CallContext& context, const HttpRequest& request, const PathParameters&) {
-  const auto query = list_query(request);
-  if (!query) return problem_response(query.problem());
-  const auto page = context.service.list(*query);
-  if (!page) return problem_response(page.problem());
-  const auto& [renders, next_cursor] = *page;
-  return tagged_json(request, api::render_list_json(renders, next_cursor));
+  return list_response(
+      request, [&](const ListQuery& query) { return context.service.list(query); },
+      [](const RenderPage& page) { return api::render_list_json(page.renders, page.next_cursor); });
 }
 
 HttpResponse get_render(CallContext& context, const HttpRequest& request,
                         const PathParameters& path) {
-  return status_response(context, request, [&] { return context.service.tell(path.id); });
+  return awaited_status(context, request, [&] { return context.service.tell(path.id); });
 }
 
 HttpResponse cancel_render(CallContext& context, const HttpRequest&, const PathParameters& path) {
-  const auto status = context.service.cancel(path.id);
-  if (!status) return problem_response(status.problem());
-  return json_response(200, to_json(*status));
+  return status_response(context.service.cancel(path.id));
 }
 
 HttpResponse delete_render(CallContext& context, const HttpRequest&, const PathParameters& path) {
-  if (const auto problem = context.service.remove(path.id)) return problem_response(*problem);
-  return {204, {}, {}, {}};
+  return removal_response(context.service.remove(path.id));
 }
 
 }  // namespace translucube::server

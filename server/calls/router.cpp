@@ -4,8 +4,8 @@
 #include <array>
 #include <iterator>
 
+#include "api/base/faults.h"
 #include "server/base/ids.h"
-#include "server/http/problems.h"
 
 namespace translucube::server {
 namespace {
@@ -120,10 +120,8 @@ HttpResponse respond(CallContext& context, const HttpRequest& request) {
       if (route.method == "GET") allowed += ", HEAD";
       continue;
     }
-    const std::vector<api::Fault> faults = query_faults(route, request);
-    if (!faults.empty())
-      return problem_response(
-          {ProblemCode::invalid_request, "A query parameter is not valid.", faults});
+    std::vector<api::Fault> faults = query_faults(route, request);
+    if (!faults.empty()) return problem_response(api::invalid_query(std::move(faults)));
     if (!parameters->id.empty() && !is_id(parameters->id))
       return problem_response({ProblemCode::not_found, "There is nothing of this id.", {}});
     return route.handle(context, request, *parameters);

@@ -22,28 +22,22 @@ HttpResponse post_sweep(CallContext& context, const HttpRequest& request, const 
 }
 
 HttpResponse list_sweeps(CallContext& context, const HttpRequest& request, const PathParameters&) {
-  const auto query = list_query(request);
-  if (!query) return problem_response(query.problem());
-  const auto page = context.service.list_sweeps(*query);
-  if (!page) return problem_response(page.problem());
-  const auto& [sweeps, next_cursor] = *page;
-  return tagged_json(request, api::sweep_list_json(sweeps, next_cursor));
+  return list_response(
+      request, [&](const ListQuery& query) { return context.service.list_sweeps(query); },
+      [](const SweepPage& page) { return api::sweep_list_json(page.sweeps, page.next_cursor); });
 }
 
 HttpResponse get_sweep(CallContext& context, const HttpRequest& request,
                        const PathParameters& path) {
-  return status_response(context, request, [&] { return context.service.tell_sweep(path.id); });
+  return awaited_status(context, request, [&] { return context.service.tell_sweep(path.id); });
 }
 
 HttpResponse cancel_sweep(CallContext& context, const HttpRequest&, const PathParameters& path) {
-  const auto status = context.service.cancel_sweep(path.id);
-  if (!status) return problem_response(status.problem());
-  return json_response(200, to_json(*status));
+  return status_response(context.service.cancel_sweep(path.id));
 }
 
 HttpResponse delete_sweep(CallContext& context, const HttpRequest&, const PathParameters& path) {
-  if (const auto problem = context.service.remove_sweep(path.id)) return problem_response(*problem);
-  return {204, {}, {}, {}};
+  return removal_response(context.service.remove_sweep(path.id));
 }
 
 }  // namespace translucube::server

@@ -19,7 +19,7 @@ std::span<const WebFile> web_files();
 /// nullptr where there is none of this name.
 const WebFile* find_web_file(std::string_view name);
 
-/// By the name's extension.
+/// The media type that the name's extension stands for.
 std::string_view web_content_type(std::string_view name);
 
 }  // namespace translucube::server

@@ -121,9 +121,9 @@ void check_places(const RenderOptions& options, const api::RenderRequest& reques
 }
 
 int render_or_throw(const RenderOptions& options, const Interruption& interruption) {
-  const std::optional<Pixel> pixel =
-      options.pixel ? std::optional(pixel_of(*options.pixel)) : std::nullopt;
-  if (!pixel && options.outputs.empty())
+  if (options.pixel)
+    pixel_of(*options.pixel);
+  else if (options.outputs.empty())
     throw Refusal{exit_bad_request, "-o: at least one output is needed\n"};
   const api::Catalog catalog = command_line_catalog(options.setting.config);
   const api::RenderRequest request = accepted(
@@ -133,7 +133,7 @@ int render_or_throw(const RenderOptions& options, const Interruption& interrupti
   check_places(options, request);
 
   const std::shared_ptr<const Scene> scene = build_scene(api::scene_spec(request, catalog));
-  if (pixel) return explain(*scene, *pixel, options.sample, request);
+  if (options.pixel) return explain(*scene, pixel_of(*options.pixel), options.sample, request);
   const RenderResult result = [&] {
     ProgressLine line;
     return render(*scene, request.quality, options.setting.threads, interruption.stop,

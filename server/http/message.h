@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "api/base/problem.h"
 #include "server/base/file.h"
 
 namespace translucube::server {
@@ -58,5 +59,11 @@ struct HttpResponse {
   std::string content_type;
   std::variant<std::string, FileSlice, EventStream> body;
 };
+
+/// The answer that carries a problem, with the headers that its status asks for.
+HttpResponse problem_response(const api::Problem& problem);
+
+/// An answer with a text body as bytes for a connection that ends with it.
+std::string wire_text(const HttpResponse& response);
 
 }  // namespace translucube::server

@@ -13,7 +13,6 @@
 #include "api/base/text.h"
 #include "server/base/ids.h"
 #include "server/http/exchange.h"
-#include "server/http/problems.h"
 #include "server/http/wire.h"
 
 namespace translucube::server {
@@ -79,7 +78,7 @@ struct HttpServer::Impl {
         options(o),
         http(o, [this](ProblemCode code) { return refusal(code); }) {}
 
-  /// For a connection whose request was not read.
+  /// The answer on a connection whose request was not read.
   std::string refusal(ProblemCode code) const {
     HttpResponse answer = problem_response({code, "", {}});
     RequestRecord record;

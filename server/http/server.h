@@ -24,7 +24,7 @@ struct HttpOptions {
   std::string host = "127.0.0.1";
   int port = 0;  ///< 0: any free one
   std::uint64_t body_bytes = 1 << 20;
-  /// For requests under way, those that wait, stream or transfer included.
+  /// Requests that are under way at once, those that wait, stream or transfer included.
   int threads = 64;
   int transfers = 32;     ///< threads that may wait for slow clients at once
   int connections = 512;  ///< open at once; of more, the one idle for longest is closed

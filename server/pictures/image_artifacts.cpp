@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 
+#include "api/base/faults.h"
 #include "server/base/ids.h"
 #include "server/pictures/developed_image.h"
 
@@ -48,33 +49,32 @@ std::string form_name(const ImageForm& form) {
 }
 
 Result<ImageForm> image_form(const ImageQuery& query, const std::vector<Display>& displays) {
-  Problem problem{ProblemCode::invalid_request, "A query parameter is not valid.", {}};
+  std::vector<api::Fault> faults;
   ImageForm form;
   form.format = query.format;
   if (is_scene_linear(query.format)) {
     form.colorspace = query.colorspace.value_or(std::string(colorspaces[0]));
     if (std::ranges::find(colorspaces, form.colorspace) == colorspaces.end())
-      problem.faults.push_back(
+      faults.push_back(
           {"?colorspace", "must be one of " + list_of(colorspaces, [](auto c) { return c; })});
     for (const char* given : {query.display ? "?display" : "", query.view ? "?view" : ""})
-      if (*given)
-        problem.faults.push_back({given, "an EXR is scene-linear: it has no display and view"});
+      if (*given) faults.push_back({given, "an EXR is scene-linear: it has no display and view"});
   } else {
-    if (query.colorspace) problem.faults.push_back({"?colorspace", "only an EXR is scene-linear"});
+    if (query.colorspace) faults.push_back({"?colorspace", "only an EXR is scene-linear"});
     const auto display = query.display ? std::ranges::find(displays, *query.display, &Display::name)
                                        : displays.begin();
     if (display == displays.end()) {
-      problem.faults.push_back(
+      faults.push_back(
           {"?display", "must be one of " + list_of(displays, [](auto& d) { return d.name; })});
     } else {
       form.display = display->name;
       form.view = query.view.value_or(display->views.front());
       if (std::ranges::find(display->views, form.view) == display->views.end())
-        problem.faults.push_back(
+        faults.push_back(
             {"?view", "must be one of " + list_of(display->views, [](auto& v) { return v; })});
     }
   }
-  if (!problem.faults.empty()) return problem;
+  if (!faults.empty()) return api::invalid_query(std::move(faults));
   return form;
 }
 

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "api/base/faults.h"
 #include "server/base/ids.h"
 
 namespace translucube::server {
@@ -16,9 +17,7 @@ api::Result<JobFilter> page_filter(const ListQuery& query) {
   if (!query.cursor) return filter;
   const std::string_view cursor = *query.cursor;
   if (!cursor.starts_with(cursor_prefix) || !is_id(cursor.substr(cursor_prefix.size())))
-    return api::Problem{api::ProblemCode::invalid_request,
-                        "A query parameter is not valid.",
-                        {{"?cursor", "not a cursor that this service gave"}}};
+    return api::invalid_query({{"?cursor", "not a cursor that this service gave"}});
   filter.before_id = cursor.substr(cursor_prefix.size());
   return filter;
 }

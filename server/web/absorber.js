@@ -77,7 +77,7 @@ export class AbsorberPicker {
     }));
   }
 
-  /// With values of its own: its colour is wanted before the list may be there.
+  /// The absorber with values. Its colour is wanted before the list may be there.
   spectrumOf(absorber) {
     if (typeof absorber !== 'string') return absorber;
     return this.#named.find(({name}) => name === absorber) ?? {rgb: [0.5, 0.5, 0.5]};

@@ -130,7 +130,7 @@ export function displayQuery({view}) {
   return slash > 0 ? {display: view.slice(0, slash), view: view.slice(slash + 1)} : {};
 }
 
-/// As a command for a shell.
+/// The request as a command for a shell.
 export function curlCommand(request, origin, withToken) {
   const body = JSON.stringify(request).replaceAll("'", `'\\''`);
   const token = withToken ? ` -H "Authorization: Bearer $TOKEN"` : '';

@@ -19,11 +19,7 @@ std::string slab_of(const std::string& members) {
 }
 
 std::vector<std::string> faults_of(const std::string& text) {
-  const auto result = parse_appearance_request(text, shipped_catalog());
-  std::vector<std::string> all;
-  if (!result)
-    for (const Fault& fault : result.problem().faults) all.push_back(fault.pointer);
-  return all;
+  return fault_pointers(parse_appearance_request(text, shipped_catalog()));
 }
 
 json answer_to(const std::string& text) {

@@ -39,23 +39,29 @@ inline std::string material_with(const std::string& members) {
   return R"({"material":{"cube":)" + some_cube + "," + members + "}}";
 }
 
-inline std::vector<std::string> pointers(const std::string& text,
-                                         const Catalog& catalog = shipped_catalog()) {
-  const auto result = parse_render_request(text, catalog);
+/// Where the faults are; none where it was accepted.
+template <typename T>
+std::vector<std::string> fault_pointers(const Result<T>& result) {
   std::vector<std::string> all;
   if (!result)
     for (const Fault& fault : result.problem().faults) all.push_back(fault.pointer);
   return all;
 }
 
-/// The request; a test fails where there are faults.
+inline std::vector<std::string> pointers(const std::string& text,
+                                         const Catalog& catalog = shipped_catalog()) {
+  return fault_pointers(parse_render_request(text, catalog));
+}
+
+/// What was read of the text; a test fails where there are faults.
+template <typename T>
+T accepted(Result<T> result, const std::string& text) {
+  if (result) return *std::move(result);
+  ADD_FAILURE() << text << '\n' << to_text(result.problem());
+  return {};
+}
 inline RenderRequest accepted(const std::string& text, const Catalog& catalog = shipped_catalog()) {
-  const auto result = parse_render_request(text, catalog);
-  if (!result) {
-    ADD_FAILURE() << text << '\n' << to_text(result.problem());
-    return {};
-  }
-  return *result;
+  return accepted(parse_render_request(text, catalog), text);
 }
 
 /// The only fault's detail.

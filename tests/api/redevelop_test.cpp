@@ -17,35 +17,17 @@ namespace {
 using nlohmann::json;
 using testing::ElementsAre;
 
-const Catalog& catalog() {
-  static const Catalog shipped = load_catalog(in_repository("config/service.json"));
-  return shipped;
-}
-
 std::string canonical(const std::string& material, bool explorable = true) {
-  const auto parsed = parse_render_request(
-      R"({"material":)" + material + R"(,"explorable":)" + (explorable ? "true" : "false") + "}",
-      catalog());
-  if (!parsed) ADD_FAILURE() << to_text(parsed.problem());
-  return canonical_json(*parsed);
+  const std::string text =
+      R"({"material":)" + material + R"(,"explorable":)" + (explorable ? "true" : "false") + "}";
+  return canonical_json(accepted(text, shipped_catalog()));
 }
 
 const std::string inside =
     R"({"cube":{"absorption":0.3,"roughness":0.3,"scattering":0.5},"reference_thickness_mm":5})";
 
 Redeveloped redeveloped(const std::string& material, const Redevelopment& asked) {
-  auto result = redevelop(canonical(material), asked, catalog());
-  if (!result) {
-    ADD_FAILURE() << to_text(result.problem());
-    return {};
-  }
-  return *result;
-}
-
-std::vector<std::string> fault_pointers(const Result<Redeveloped>& result) {
-  std::vector<std::string> pointers;
-  for (const Fault& fault : result.problem().faults) pointers.push_back(fault.pointer);
-  return pointers;
+  return accepted(redevelop(canonical(material), asked, shipped_catalog()), material);
 }
 
 TEST(Redevelop, TakesAbsorptionOfTheReferenceThickness) {
@@ -58,7 +40,7 @@ TEST(Redevelop, TakesAbsorptionOfTheReferenceThickness) {
 TEST(Redevelop, KeepsWhatIsNotAsked) {
   const Redeveloped named = redeveloped(inside, {{}, "amber"});
   EXPECT_DOUBLE_EQ(named.absorption.sigma_a_peak, -std::log(0.7) / 5);
-  const auto request = *parse_render_request(named.request, catalog());
+  const auto request = *parse_render_request(named.request, shipped_catalog());
   EXPECT_EQ(canonical_json(request), named.request) << "it is canonical";
   EXPECT_EQ(std::get<std::string>(request.material.absorber), "amber");
   EXPECT_EQ(std::get<CubePoint>(request.material.point).roughness, 0.3);
@@ -73,15 +55,16 @@ TEST(Redevelop, GivesTheMaterialThatItsRequestDescribes) {
          {Redevelopment{0.8, {}}, Redevelopment{{}, "amber"}, Redevelopment{0.2, "amber"},
           Redevelopment{1.0, "amber"}, Redevelopment{0.0, {}}}) {
       const Redeveloped made = redeveloped(material, asked);
-      const auto request = *parse_render_request(made.request, catalog());
-      const Material described = scene_spec(request, catalog()).material;
+      const auto request = *parse_render_request(made.request, shipped_catalog());
+      const Material described = scene_spec(request, shipped_catalog()).material;
       EXPECT_EQ(described.coefficients.sigma_a_peak, made.absorption.sigma_a_peak) << made.request;
       EXPECT_EQ(described.absorber, made.absorption.absorber) << made.request;
-      EXPECT_NEAR(described.coefficients.sigma_s,
-                  parse_render_request(canonical(material), catalog())->material.point.index() == 0
-                      ? described.coefficients.sigma_s
-                      : 2,
-                  1e-12);
+      EXPECT_NEAR(
+          described.coefficients.sigma_s,
+          parse_render_request(canonical(material), shipped_catalog())->material.point.index() == 0
+              ? described.coefficients.sigma_s
+              : 2,
+          1e-12);
     }
 }
 
@@ -100,7 +83,7 @@ TEST(Redevelop, TakesAnAbsorberThatHasNoName) {
       redeveloped(inside, {{}, R"({"wavelengths_nm":[400,700],"values":[1,0]})"});
   EXPECT_THAT(std::get<SpectralAbsorber>(own.absorption.absorber).values, ElementsAre(1, 0));
   const auto refused = [](const std::string& absorber) {
-    return fault_pointers(redevelop(canonical(inside), {{}, absorber}, catalog()));
+    return fault_pointers(redevelop(canonical(inside), {{}, absorber}, shipped_catalog()));
   };
   EXPECT_THAT(refused(R"({"rgb":[0,0,0]})"), ElementsAre("?absorber/rgb"));
   EXPECT_THAT(refused("{"), ElementsAre("?absorber"));
@@ -110,20 +93,20 @@ TEST(Redevelop, TakesAnAbsorberThatHasNoName) {
 TEST(Redevelop, OtherSamplesAreAnotherQuality) {
   const std::string request = with_samples(canonical(inside), 12);
   EXPECT_EQ(json::parse(request)["quality"], (json{{"samples", 12}}));
-  const auto parsed = parse_render_request(request, catalog());
+  const auto parsed = parse_render_request(request, shipped_catalog());
   EXPECT_EQ(canonical_json(*parsed), request);
 }
 
 TEST(Redevelop, RefusesWhatItDoesNotKnow) {
   const std::string request = canonical(inside);
-  EXPECT_THAT(fault_pointers(redevelop(request, {1.5, "nothing"}, catalog())),
+  EXPECT_THAT(fault_pointers(redevelop(request, {1.5, "nothing"}, shipped_catalog())),
               ElementsAre("?absorber", "?absorption"));
-  EXPECT_THAT(fault_pointers(redevelop(request, {std::nan(""), {}}, catalog())),
+  EXPECT_THAT(fault_pointers(redevelop(request, {std::nan(""), {}}, shipped_catalog())),
               ElementsAre("?absorption"));
 }
 
 TEST(Redevelop, RefusesARenderWithoutPathLengthsNamingTheParameters) {
-  const auto result = redevelop(canonical(inside, false), {0.5, "amber"}, catalog());
+  const auto result = redevelop(canonical(inside, false), {0.5, "amber"}, shipped_catalog());
   EXPECT_EQ(result.problem().code, ProblemCode::conflict);
   EXPECT_THAT(fault_pointers(result), ElementsAre("?absorption", "?absorber"));
 }

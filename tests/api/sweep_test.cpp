@@ -20,24 +20,13 @@ std::string sweep_with(const std::string& members, const std::string& of_base = 
 }
 std::string axes(const std::string& members) { return sweep_with(R"("axes":{)" + members + "}"); }
 
-/// The sweep; a test fails where there are faults.
 Sweep accepted_sweep(const std::string& text, const Catalog& catalog = shipped_catalog()) {
-  auto result = parse_sweep_request(text, catalog);
-  if (!result) {
-    ADD_FAILURE() << text << '\n' << to_text(result.problem());
-    return {};
-  }
-  return *std::move(result);
+  return accepted(parse_sweep_request(text, catalog), text);
 }
 
-/// Where the faults are; none where it is accepted.
 std::vector<std::string> sweep_pointers(const std::string& text,
                                         const Catalog& catalog = shipped_catalog()) {
-  const auto result = parse_sweep_request(text, catalog);
-  std::vector<std::string> all;
-  if (!result)
-    for (const Fault& fault : result.problem().faults) all.push_back(fault.pointer);
-  return all;
+  return fault_pointers(parse_sweep_request(text, catalog));
 }
 
 TEST(SweepRequest, AnAxisIsAListInItsOrder) {

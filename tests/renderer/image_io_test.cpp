@@ -19,6 +19,8 @@
 
 #include "tests/support/repository.h"
 
+#include "picture/version.h"
+
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
 #endif
@@ -157,6 +159,18 @@ TEST_F(ImageIo, LongRequestsSurviveWhereTheFormatHasRoomAndBreakNoOther) {
       EXPECT_EQ(read_metadata(path("a")).colorspace, "sRGB/plain") << name(format);
     }
   }
+}
+
+TEST_F(ImageIo, MetadataOfAnotherVersionIsReadToo) {
+  write_image(path("a.tiff"), ramp(8, 8), ImageFormat::tiff, {"{}", "sRGB/plain"});
+  std::string bytes = bytes_of(path("a.tiff"));
+  const std::string program = "Translucube ", version(project_version());
+  const std::size_t at = bytes.find(program + version + ", ");
+  ASSERT_NE(at, bytes.npos);
+  bytes.replace(at + program.size(), version.size(), std::string(version.size(), '9'));
+  const ImageMetadata metadata = read_metadata(write_bytes("b.tiff", bytes));
+  EXPECT_EQ(metadata.request, "{}");
+  EXPECT_EQ(metadata.colorspace, "sRGB/plain");
 }
 
 TEST_F(ImageIo, ForeignFilesHaveNoMetadata) {

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "server/calls/router.h"
-#include "tests/server/fixture.h"
+#include "tests/server/calls_under_test.h"
 
 namespace translucube::server::test {
 namespace {
@@ -14,32 +13,19 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-struct FrontUnderTest {
-  explicit FrontUnderTest(int workers = 1)
-      : service(folder.path(), renderer.engine(), {workers, {}}) {}
+struct FrontUnderTest : CallsUnderTest {
+  using CallsUnderTest::CallsUnderTest;
 
   HttpResponse call(const std::string& method, const std::string& path,
-                    const std::string& body = {}, std::map<std::string, std::string> headers = {},
-                    std::vector<std::pair<std::string, std::string>> query = {}) {
+                    const std::string& body = {}, Headers headers = {}, Query query = {}) {
     return respond(context, {method, path, std::move(query), std::move(headers), body});
   }
-  HttpResponse post(int samples, std::map<std::string, std::string> headers = {}) {
+  HttpResponse post(int samples, Headers headers = {}) {
     headers.emplace("content-type", "application/json");
     return call("POST", "/v1/renders", small_request(samples), std::move(headers));
   }
   std::string finished() { return service.wait(service.submit(small_request(4)).id).id; }
-
-  TempFolder folder;
-  FakeRenderer renderer;
-  TestService service;
-  CallContext context{service.service, service.catalog, service.colors, service.config};
 };
-
-std::string header(const HttpResponse& response, const std::string& name) {
-  for (const auto& [key, value] : response.headers)
-    if (key == name) return value;
-  return {};
-}
 
 json body_of(const HttpResponse& response) {
   return json::parse(std::get<std::string>(response.body));

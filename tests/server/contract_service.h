@@ -4,7 +4,7 @@
 // answer against the OpenAPI document.
 
 #include "server/calls/front.h"
-#include "server/calls/router.h"
+#include "tests/server/calls_under_test.h"
 #include "tests/server/contract.h"
 
 namespace translucube::server::test {
@@ -85,17 +85,12 @@ class Caller {
 };
 
 /// A service of its own folder. Without workers, what it takes stays queued.
-struct Live {
+struct Live : CallsUnderTest {
   Live(Contract& contract, int workers, StoreOptions store = {})
-      : service(folder.path(), renderer.engine(), {workers, std::move(store)}),
-        context{service.service, service.catalog, service.colors, service.config},
+      : CallsUnderTest(workers, std::move(store)),
         served([this](const HttpRequest& request) { return respond(context, request); }),
         caller(contract, served.port()) {}
 
-  TempFolder folder;
-  FakeRenderer renderer;
-  TestService service;
-  CallContext context;
   Served served;
   Caller caller;
 };

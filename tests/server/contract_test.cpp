@@ -2,7 +2,6 @@
 // it lists is provoked and its answer held against its schema.
 
 #include "picture/image_format.h"
-#include "server/http/problems.h"
 #include "tests/server/contract_service.h"
 #include "tests/server/sockets.h"
 

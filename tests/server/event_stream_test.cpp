@@ -5,29 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "server/calls/router.h"
-#include "tests/server/fixture.h"
+#include "tests/server/calls_under_test.h"
 
 namespace translucube::server::test {
 namespace {
 
 using nlohmann::json;
-
-struct StreamsUnderTest {
-  explicit StreamsUnderTest(int workers = 1)
-      : service(folder.path(), renderer.engine(), {workers, {}}) {}
-
-  HttpResponse listen(const std::string& id, const std::string& last = {}) {
-    std::map<std::string, std::string> headers;
-    if (!last.empty()) headers["last-event-id"] = last;
-    return respond(context, {"GET", "/v1/renders/" + id + "/events", {}, headers, {}});
-  }
-
-  TempFolder folder;
-  FakeRenderer renderer;
-  TestService service;
-  CallContext context{service.service, service.catalog, service.colors, service.config};
-};
 
 std::string whole(const HttpResponse& response) {
   std::string text;
@@ -57,7 +40,7 @@ std::vector<Told> events_in(const std::string& text) {
 }
 
 TEST(EventStreamTest, TellsARenderFromItsQueueToItsEnd) {
-  StreamsUnderTest tested;
+  CallsUnderTest tested;
   const std::string id = tested.service.submit(small_request(16)).id;
   std::vector<Told> events;
   {
@@ -100,7 +83,7 @@ TEST(EventStreamTest, ReplaysWhatCameAfterTheLastEventAlsoAfterARestart) {
 }
 
 TEST(EventStreamTest, SlotsAreBoundedAndGivenBack) {
-  StreamsUnderTest tested(0);
+  CallsUnderTest tested(0);
   const std::string id = tested.service.submit(small_request(4)).id;
   const auto crowd = take_all_but(1, tested.context.streams);
   {
@@ -115,7 +98,7 @@ TEST(EventStreamTest, SlotsAreBoundedAndGivenBack) {
 }
 
 TEST(EventStreamTest, EndsWithTheServiceAndWithTheRendersRemoval) {
-  StreamsUnderTest tested(0);
+  CallsUnderTest tested(0);
   const std::string stays = tested.service.submit(small_request(4, 1)).id;
   const std::string goes = tested.service.submit(small_request(4, 2)).id;
   const HttpResponse removed = tested.listen(goes), stopped = tested.listen(stays);
@@ -127,7 +110,7 @@ TEST(EventStreamTest, EndsWithTheServiceAndWithTheRendersRemoval) {
 }
 
 TEST(LongPollTest, AnswersWhenTheStatusIsNoLongerTheKnownOne) {
-  StreamsUnderTest tested(0);
+  CallsUnderTest tested(0);
   const std::string id = tested.service.submit(small_request(4)).id;
   const auto get = [&](const std::string& wait, const std::string& etag) {
     return respond(tested.context,

@@ -5,8 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "picture/image_io.h"
-#include "server/calls/router.h"
-#include "tests/server/fixture.h"
+#include "tests/server/calls_under_test.h"
 
 namespace translucube::server::test {
 namespace {
@@ -24,28 +23,21 @@ std::string request(double absorption, bool explorable, const std::string& absor
       .dump();
 }
 
-class Explored {
- public:
+struct Explored : CallsUnderTest {
+  Explored() : CallsUnderTest(renderer_engine()) {}
+
   std::string finished(const std::string& document) {
-    const api::RenderStatus status = service_.wait(service_.submit(document).id);
+    const api::RenderStatus status = service.wait(service.submit(document).id);
     EXPECT_EQ(status.state, api::JobState::succeeded);
     return status.id;
   }
   api::Result<ImageFile> image(const std::string& id, api::Redevelopment asked) {
-    return service_.service.image(id, {ImageFormat::exr, {}, {}, {}, std::move(asked)});
+    return service.service.image(id, {ImageFormat::exr, {}, {}, {}, std::move(asked)});
   }
   std::vector<float> pixels(const ImageFile& image) {
-    write_file(folder_ / "picture.exr", image.file->read_all());
-    return read_image(folder_ / "picture.exr").pixels;
+    write_file(folder / "picture.exr", image.file->read_all());
+    return read_image(folder / "picture.exr").pixels;
   }
-  HttpResponse get(const std::string& id, std::vector<std::pair<std::string, std::string>> query) {
-    CallContext context{service_.service, service_.catalog, service_.colors, service_.config};
-    return respond(context, {"GET", "/v1/renders/" + id + "/image", std::move(query), {}, {}});
-  }
-
- private:
-  TempFolder folder_;
-  TestService service_{folder_.path(), renderer_engine()};
 };
 
 TEST(ExplorableService, RedevelopsWithoutTracingWhatARenderOfItsOwnWouldShow) {
@@ -72,7 +64,7 @@ TEST(ExplorableService, TheRequestsOwnAbsorptionGivesTheRendersOwnPicture) {
 TEST(ExplorableService, ARenderWithoutPathLengthsIsAConflictThatNamesTheParameter) {
   Explored service;
   const std::string id = service.finished(request(0.3, false));
-  const HttpResponse response = service.get(id, {{"absorption", "0.5"}});
+  const HttpResponse response = service.get_image(id, {{"absorption", "0.5"}});
   EXPECT_EQ(response.status, 409);
   EXPECT_EQ(json::parse(std::get<std::string>(response.body))["errors"][0]["pointer"],
             "?absorption");
@@ -86,12 +78,12 @@ TEST(ExplorableService, RefusesParametersThatMeanNothing) {
                                                         {"absorption", "nan"},
                                                         {"absorption", ""},
                                                         {"absorber", "nope"}}) {
-    const HttpResponse response = service.get(id, {{name, value}});
+    const HttpResponse response = service.get_image(id, {{name, value}});
     EXPECT_EQ(response.status, 422) << name << value;
     EXPECT_EQ(json::parse(std::get<std::string>(response.body))["errors"][0]["pointer"],
               "?" + name);
   }
-  EXPECT_EQ(service.get(id, {{"absorption", "1"}, {"absorber", "leaf"}}).status, 200);
+  EXPECT_EQ(service.get_image(id, {{"absorption", "1"}, {"absorber", "leaf"}}).status, 200);
 }
 
 }  // namespace

@@ -6,9 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "server/calls/front.h"
-#include "server/calls/router.h"
 #include "server/http/server.h"
-#include "tests/server/fixture.h"
+#include "tests/server/calls_under_test.h"
 #include "tests/server/wire.h"
 #include "tests/support/malformed_corpus.h"
 
@@ -27,9 +26,9 @@ HttpOptions few_threads(std::uint64_t body_bytes, int threads) {
   return options;
 }
 
-struct Served {
+struct Served : CallsUnderTest {
   explicit Served(int workers = 1, int threads = 8)
-      : service(folder.path(), renderer.engine(), {workers, {}}),
+      : CallsUnderTest(workers),
         server(handlers(), few_threads(service.catalog.limits.body_bytes, threads)),
         thread([this] { server.run(); }) {
     while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -47,10 +46,6 @@ struct Served {
     return all;
   }
 
-  TempFolder folder;
-  FakeRenderer renderer;
-  TestService service;
-  CallContext context{service.service, service.catalog, service.colors, service.config};
   HttpServer server;
   std::jthread thread;
   httplib::Client client{"127.0.0.1", server.port()};

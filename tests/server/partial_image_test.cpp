@@ -5,14 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "picture/image_io.h"
-#include "server/calls/router.h"
-#include "tests/server/fixture.h"
+#include "tests/server/calls_under_test.h"
 
 namespace translucube::server::test {
 namespace {
 
 using nlohmann::json;
-using Query = std::vector<std::pair<std::string, std::string>>;
 
 /// A renderer whose passes wait until they are let through.
 struct Gate {
@@ -36,17 +34,12 @@ Engine around_passes(std::function<std::optional<PassFilm>(const Pass&, const Tr
   };
 }
 
-struct PartialUnderTest {
-  explicit PartialUnderTest(Engine engine)
-      : service(folder.path(), std::move(engine)),
-        context{service.service, service.catalog, service.colors, service.config} {}
+struct PartialUnderTest : CallsUnderTest {
+  using CallsUnderTest::CallsUnderTest;
 
-  HttpResponse get(const std::string& id, Query query) {
-    return respond(context, {"GET", "/v1/renders/" + id + "/image", std::move(query), {}, {}});
-  }
   std::string exr(const std::string& id, Query query = {}) {
     query.emplace_back("format", "exr");
-    const HttpResponse response = get(id, std::move(query));
+    const HttpResponse response = get_image(id, std::move(query));
     EXPECT_EQ(response.status, 200);
     return std::get<FileSlice>(response.body).file->read_all();
   }
@@ -54,10 +47,6 @@ struct PartialUnderTest {
     write_file(folder / "picture.exr", bytes);
     return read_image(folder / "picture.exr");
   }
-
-  TempFolder folder;
-  TestService service;
-  CallContext context;
 };
 
 TEST(PartialImageTest, ARenderIsSeenFromItsFirstPassOn) {
@@ -67,20 +56,20 @@ TEST(PartialImageTest, ARenderIsSeenFromItsFirstPassOn) {
   PartialUnderTest tested(renderer.engine());
   const std::string id = tested.service.submit(small_request(16)).id;
   ASSERT_TRUE(eventually([&] { return renderer.builds == 1; }));
-  EXPECT_EQ(tested.get(id, {{"partial", "true"}}).status, 409) << "nothing is there yet";
+  EXPECT_EQ(tested.get_image(id, {{"partial", "true"}}).status, 409) << "nothing is there yet";
   EXPECT_EQ(tested.service.service.samples_to_see(id), 0u);
 
   gate.open = 1;
   ASSERT_TRUE(eventually([&] { return tested.service.service.samples_to_see(id) == 4; }));
-  EXPECT_EQ(tested.get(id, {}).status, 409) << "only who asks for it gets it";
-  EXPECT_EQ(tested.get(id, {{"partial", "false"}}).status, 409);
-  EXPECT_EQ(tested.get(id, {{"partial", "perhaps"}}).status, 422);
-  EXPECT_EQ(tested.get(id, {{"partial", "true"}, {"display", "none"}}).status, 422);
+  EXPECT_EQ(tested.get_image(id, {}).status, 409) << "only who asks for it gets it";
+  EXPECT_EQ(tested.get_image(id, {{"partial", "false"}}).status, 409);
+  EXPECT_EQ(tested.get_image(id, {{"partial", "perhaps"}}).status, 422);
+  EXPECT_EQ(tested.get_image(id, {{"partial", "true"}, {"display", "none"}}).status, 422);
   const std::string early = tested.exr(id, {{"partial", "true"}});
   write_file(tested.folder / "early.exr", early);
   EXPECT_EQ(json::parse(read_metadata(tested.folder / "early.exr").request)["quality"],
             (json{{"samples", 4}}));
-  EXPECT_EQ(tested.get(id, {{"partial", "true"}, {"absorption", "0.5"}}).status, 409)
+  EXPECT_EQ(tested.get_image(id, {{"partial", "true"}, {"absorption", "0.5"}}).status, 409)
       << "it is not explorable";
 
   gate.open = 100;
@@ -104,7 +93,7 @@ TEST(PartialImageTest, SamplesThatAreNotFiniteAreNotShown) {
   const std::string id = tested.service.submit(small_request(16)).id;
   gate.open = 1;
   EXPECT_EQ(tested.service.wait(id).state, api::JobState::failed);
-  EXPECT_EQ(tested.get(id, {{"partial", "true"}}).status, 409);
+  EXPECT_EQ(tested.get_image(id, {{"partial", "true"}}).status, 409);
 }
 
 TEST(PartialImageTest, TheEventStreamSaysThatThereIsMoreToSee) {
@@ -113,8 +102,7 @@ TEST(PartialImageTest, TheEventStreamSaysThatThereIsMoreToSee) {
   renderer.before_pass = [&](const Pass& pass) { gate.wait_for(pass); };
   PartialUnderTest tested(renderer.engine());
   const std::string id = tested.service.submit(small_request(8)).id;
-  const HttpResponse response =
-      respond(tested.context, {"GET", "/v1/renders/" + id + "/events", {}, {}, {}});
+  const HttpResponse response = tested.listen(id);
   const EventStream& stream = std::get<EventStream>(response.body);
   std::string text;
   gate.open = 1;
@@ -148,11 +136,11 @@ TEST(PartialImageTest, AnExplorableRenderIsSeenThroughAnyAbsorberWhileItIsTraced
   gate.open = 1;
   ASSERT_TRUE(eventually([&] { return tested.service.service.samples_to_see(id) == 4; }));
   const std::string through = R"({"rgb":[0.1,1,0.5]})";
-  const Query query{{"absorption", "0.7"}, {"absorber", through}};
-  Query partial = query;
+  const CallsUnderTest::Query query{{"absorption", "0.7"}, {"absorber", through}};
+  CallsUnderTest::Query partial = query;
   partial.emplace_back("partial", "true");
   const Image early = tested.image(tested.exr(id, partial));
-  EXPECT_EQ(tested.get(id, {{"partial", "true"}, {"absorber", "none"}}).status, 422);
+  EXPECT_EQ(tested.get_image(id, {{"partial", "true"}, {"absorber", "none"}}).status, 422);
 
   const std::string alone = tested.service.submit(explorable_request(4)).id;
   gate.open = 100;

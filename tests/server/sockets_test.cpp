@@ -5,7 +5,7 @@
 namespace translucube::server::test {
 namespace {
 
-TEST(RoutesSocketsTest, IdleConnectionsHoldNoThread) {
+TEST(SocketsTest, IdleConnectionsHoldNoThread) {
   HttpOptions options;
   options.threads = 2;
   Sockets sockets(options);
@@ -24,7 +24,7 @@ TEST(RoutesSocketsTest, IdleConnectionsHoldNoThread) {
   }
 }
 
-TEST(RoutesSocketsTest, RequestsThatComeTogetherAreAnsweredInTurn) {
+TEST(SocketsTest, RequestsThatComeTogetherAreAnsweredInTurn) {
   Sockets sockets;
   Wire wire(sockets.server.port());
   const std::string post =
@@ -46,7 +46,7 @@ TEST(RoutesSocketsTest, RequestsThatComeTogetherAreAnsweredInTurn) {
   EXPECT_EQ(sockets.answered, 20);
 }
 
-TEST(RoutesSocketsTest, TheOldestIdleConnectionGivesWayToANewOne) {
+TEST(SocketsTest, TheOldestIdleConnectionGivesWayToANewOne) {
   HttpOptions options;
   options.connections = 4;
   Sockets sockets(options);
@@ -58,7 +58,7 @@ TEST(RoutesSocketsTest, TheOldestIdleConnectionGivesWayToANewOne) {
   EXPECT_FALSE(idle[3]->closed(100));
 }
 
-TEST(RoutesSocketsTest, WhereAllConnectionsAreServedANewOneIsToldToComeLater) {
+TEST(SocketsTest, WhereAllConnectionsAreServedANewOneIsToldToComeLater) {
   HttpOptions options;
   options.connections = 2;
   Sockets sockets(options);
@@ -74,7 +74,7 @@ TEST(RoutesSocketsTest, WhereAllConnectionsAreServedANewOneIsToldToComeLater) {
   EXPECT_TRUE(third.closed());
 }
 
-TEST(RoutesSocketsTest, HeadersMustComeInTime) {
+TEST(SocketsTest, HeadersMustComeInTime) {
   HttpOptions options;
   options.threads = 2;
   options.header_timeout = milliseconds(400);
@@ -96,7 +96,7 @@ TEST(RoutesSocketsTest, HeadersMustComeInTime) {
   EXPECT_EQ(silent.receive(), "");
 }
 
-TEST(RoutesSocketsTest, AnIdleConnectionIsClosedInTheEnd) {
+TEST(SocketsTest, AnIdleConnectionIsClosedInTheEnd) {
   HttpOptions options;
   options.idle_timeout = milliseconds(300);
   Sockets sockets(options);
@@ -106,7 +106,7 @@ TEST(RoutesSocketsTest, AnIdleConnectionIsClosedInTheEnd) {
   EXPECT_TRUE(wire.closed(5000));
 }
 
-TEST(RoutesSocketsTest, HeadersMayNotBeEndless) {
+TEST(SocketsTest, HeadersMayNotBeEndless) {
   Sockets sockets;
   Wire wire(sockets.server.port());
   wire.send("GET / HTTP/1.1\r\n");
@@ -116,7 +116,7 @@ TEST(RoutesSocketsTest, HeadersMayNotBeEndless) {
   EXPECT_THAT(wire.receive(), StartsWith("HTTP/1.1 431"));
 }
 
-TEST(RoutesSocketsTest, SlowBodiesHaveTheirPlacesAndTheirTime) {
+TEST(SocketsTest, SlowBodiesHaveTheirPlacesAndTheirTime) {
   HttpOptions options;
   options.threads = 4;
   options.transfers = 2;
@@ -141,7 +141,7 @@ TEST(RoutesSocketsTest, SlowBodiesHaveTheirPlacesAndTheirTime) {
   EXPECT_EQ(sockets.answered, 1);
 }
 
-TEST(RoutesSocketsTest, ClientsThatDoNotReadAreLeft) {
+TEST(SocketsTest, ClientsThatDoNotReadAreLeft) {
   HttpOptions options;
   options.threads = 3;
   options.transfers = 2;

@@ -5,9 +5,8 @@
 #include <regex>
 #include <set>
 
-#include "server/calls/router.h"
 #include "server/calls/web_files.h"
-#include "tests/server/fixture.h"
+#include "tests/server/calls_under_test.h"
 
 namespace translucube::server::test {
 namespace {
@@ -15,22 +14,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
-
-struct WebUnderTest {
-  HttpResponse get(const std::string& path, std::map<std::string, std::string> headers = {}) {
-    return respond(context, {"GET", path, {}, std::move(headers), {}});
-  }
-  static std::string header(const HttpResponse& response, const std::string& name) {
-    for (const auto& [key, value] : response.headers)
-      if (key == name) return value;
-    return {};
-  }
-
-  TempFolder folder;
-  FakeRenderer renderer;
-  TestService service{folder.path(), renderer.engine(), {0, {}}};
-  CallContext context{service.service, service.catalog, service.colors, service.config};
-};
 
 std::set<std::string> matches(std::string_view text, const char* pattern) {
   const std::string copy(text);
@@ -42,7 +25,7 @@ std::set<std::string> matches(std::string_view text, const char* pattern) {
 }
 
 TEST(WebTest, ThePageAndItsFilesHaveTheirTypesAndAPolicy) {
-  WebUnderTest tested;
+  CallsUnderTest tested(0);
   const HttpResponse page = tested.get("/");
   EXPECT_EQ(page.status, 200);
   EXPECT_EQ(page.content_type, "text/html; charset=utf-8");
@@ -51,13 +34,12 @@ TEST(WebTest, ThePageAndItsFilesHaveTheirTypesAndAPolicy) {
     const HttpResponse response = tested.get("/web/" + std::string(file.name));
     EXPECT_EQ(response.status, 200) << file.name;
     EXPECT_NE(response.content_type, "application/octet-stream") << file.name;
-    EXPECT_THAT(WebUnderTest::header(response, "Content-Security-Policy"),
-                StartsWith("default-src 'self'; "));
-    EXPECT_THAT(WebUnderTest::header(response, "Content-Security-Policy"),
-                Not(HasSubstr("unsafe")));
-    const std::string etag = WebUnderTest::header(response, "ETag");
+    EXPECT_THAT(header(response, "Content-Security-Policy"), StartsWith("default-src 'self'; "));
+    EXPECT_THAT(header(response, "Content-Security-Policy"), Not(HasSubstr("unsafe")));
+    const std::string etag = header(response, "ETag");
     EXPECT_THAT(etag, StartsWith("\""));
-    EXPECT_EQ(tested.get("/web/" + std::string(file.name), {{"if-none-match", etag}}).status, 304);
+    EXPECT_EQ(tested.get("/web/" + std::string(file.name), {}, {{"if-none-match", etag}}).status,
+              304);
   }
   EXPECT_EQ(tested.get("/web/none.js").status, 404);
   EXPECT_EQ(tested.get("/web/").status, 404);
