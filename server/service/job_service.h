@@ -116,7 +116,6 @@ class JobService {
 
   /// Empty if the service can take work, else the reason why not.
   std::optional<std::string> unready_reason();
-  QueueGauges gauges() const { return store_.gauges(); }
 
   /// Refuses new work and ends all waiting. Passes under way may take `drain` to end, so that they
   /// are kept; then stops the workers at their next tile and gives their tasks back to the store.
