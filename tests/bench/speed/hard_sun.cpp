@@ -11,16 +11,16 @@
 namespace translucube::speed {
 namespace {
 
-constexpr int size = 96, references = 4;
+constexpr int sun_size = 96, references = 4;
 constexpr Quantity with{"untrimmed × CPU s"}, without{"without NEE"}, gain{"gain", "%.1f"},
-    trimmed{"trimmed × CPU s"}, largest{"largest pixel / converged", "%.2f"};
+    trimmed_cost{"trimmed × CPU s"}, largest{"largest pixel / converged", "%.2f"};
 
 struct Rendered {
   Image image;
   double cpu_seconds = 0;
 };
 Rendered render_once(Run& run, const PeerMaterial& material, std::uint32_t samples, bool looking) {
-  SceneSpec spec = peer_scene(material.coefficients, size, run.next_seed());
+  SceneSpec spec = peer_scene(material.coefficients, sun_size, run.next_seed());
   spec.environment.source = ImageEnvironmentSpec{sunrise(run)};
   Scene scene = *build_scene(spec);
   scene.next_event_estimation = looking;
@@ -31,7 +31,7 @@ Rendered render_once(Run& run, const PeerMaterial& material, std::uint32_t sampl
 struct Cost {
   double trimmed, untrimmed;  ///< relMSE x CPU s
 };
-Cost cost(const Rendered& a, const Rendered& b, const Image& reference) {
+Cost cost_of(const Rendered& a, const Rendered& b, const Image& reference) {
   const RelMse error = rel_mse_of_pair(a.image, b.image, reference);
   const double seconds = (a.cpu_seconds + b.cpu_seconds) / 2;
   return {error.trimmed * seconds, error.untrimmed * seconds};
@@ -75,8 +75,8 @@ Tables hard_sun(Run& run) {
     const Rendered a = render_once(run, material, samples, false),
                    b = render_once(run, material, samples, false);
     const Image converged = mean_of(others), reference = test::smoothed(converged);
-    const Cost found = cost(looking[0], looking[1], reference), blind = cost(a, b, reference);
-    table.add(name, trimmed, found.trimmed);
+    const Cost found = cost_of(looking[0], looking[1], reference), blind = cost_of(a, b, reference);
+    table.add(name, trimmed_cost, found.trimmed);
     table.add(name, with, found.untrimmed);
     table.add(name, without, blind.untrimmed);
     table.add(name, gain, blind.untrimmed / found.untrimmed, at_least(50));
