@@ -128,7 +128,8 @@ struct ColorConfig::Impl {
   std::mutex mutex;
   std::map<std::pair<std::string, std::string>, ocio::ConstCPUProcessorRcPtr> processors;
 
-  /// From our linear Rec.709 to the first space that the config knows; the space's name.
+  /// Appends what leads from our linear Rec.709 to the first space that the config knows; returns
+  /// the space's name.
   std::string append_source(ocio::GroupTransform& group) const {
     if (const auto found = space_in_config.find("lin_rec709"); found != space_in_config.end())
       return found->second;

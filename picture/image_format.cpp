@@ -1,44 +1,50 @@
-#include <algorithm>
-#include <array>
-#include <cctype>
+#include "picture/image_format.h"
 
-#include "picture/image_io.h"
+#include <algorithm>
+#include <cctype>
+#include <vector>
 
 namespace translucube {
 namespace {
 
-struct FormatInfo {
-  ImageFormat format;
-  const char* name;
-  const char* mime_type;
-  std::array<const char*, 2> extensions;
-};
-
-constexpr std::array<FormatInfo, 4> formats = {{
-    {ImageFormat::png, "png", "image/png", {"png", "png"}},
-    {ImageFormat::exr, "exr", "image/x-exr", {"exr", "openexr"}},
-    {ImageFormat::tiff, "tiff", "image/tiff", {"tiff", "tif"}},
-    {ImageFormat::jpeg, "jpeg", "image/jpeg", {"jpeg", "jpg"}},
-}};
-
-const FormatInfo& info(ImageFormat format) {
-  return *std::find_if(formats.begin(), formats.end(),
-                       [&](const FormatInfo& f) { return f.format == format; });
+std::string joined(const std::vector<std::string_view>& items, std::string_view last_joint) {
+  std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) text += i + 1 == items.size() ? last_joint : ", ";
+    text += items[i];
+  }
+  return text;
 }
 
 }  // namespace
 
-std::string_view name(ImageFormat format) { return info(format).name; }
-
-std::string_view mime_type(ImageFormat format) { return info(format).mime_type; }
-
-std::optional<ImageFormat> image_format(std::string_view name_or_extension) {
-  if (name_or_extension.starts_with('.')) name_or_extension.remove_prefix(1);
-  std::string lower(name_or_extension);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  for (const FormatInfo& f : formats)
-    if (lower == f.extensions[0] || lower == f.extensions[1]) return f.format;
+std::optional<ImageFormat> format_named(std::string_view name) {
+  for (const ImageFormatRow& row : image_formats)
+    if (row.name == name) return row.format;
   return std::nullopt;
+}
+
+std::optional<ImageFormat> format_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  if (extension.empty()) return std::nullopt;
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const ImageFormatRow& row : image_formats)
+    if (extension == row.extension || extension == row.other_extension) return row.format;
+  return std::nullopt;
+}
+
+std::string list_formats(std::string_view ImageFormatRow::*column, std::string_view joint) {
+  std::vector<std::string_view> items;
+  for (const ImageFormatRow& row : image_formats) items.push_back(row.*column);
+  return joined(items, joint);
+}
+
+std::string list_display_formats(std::string_view ImageFormatRow::*column, std::string_view joint) {
+  std::vector<std::string_view> items;
+  for (const ImageFormatRow& row : image_formats)
+    if (!row.scene_linear) items.push_back(row.*column);
+  return joined(items, joint);
 }
 
 }  // namespace translucube

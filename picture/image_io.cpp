@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "picture/exr/exr.h"
+#include "picture/exr/picture.h"
 #include "picture/image_io_rules.h"
 #include "picture/oiio/codecs.h"
 
@@ -32,7 +32,10 @@ void write_image(const std::filesystem::path& file, const Image& image, ImageFor
   if (image.width <= 0 || image.height <= 0 ||
       image.pixels.size() != std::size_t{3} * image.width * image.height)
     fail_image(file, "an image without pixels cannot be written");
-  if (format == ImageFormat::exr)
+  if (const auto& row = row_of(format); std::max(image.width, image.height) > row.longest_side)
+    fail_image(file, std::string(row.title) + " cannot be wider or higher than " +
+                         std::to_string(row.longest_side) + " pixels");
+  if (row_of(format).library == ImageLibrary::open_exr)
     write_exr(file, image, metadata);
   else
     image_codecs().write(file, image, format, metadata);

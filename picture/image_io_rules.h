@@ -2,12 +2,14 @@
 
 // What the readers and writers of image files have in common, whichever library does the work.
 
-#include <cmath>
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "picture/image_io.h"
+#include "picture/srgb.h"
 
 namespace translucube {
 
@@ -40,10 +42,24 @@ inline bool is_srgb(const std::string& colorspace) {
   return colorspace.starts_with("sRGB/") && colorspace != "sRGB/raw";
 }
 
-/// Undoes the sRGB transfer curve (IEC 61966-2-1).
+/// Undoes the sRGB transfer curve.
 inline void srgb_to_linear(Image& image) {
-  for (float& v : image.pixels)
-    v = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+  for (float& value : image.pixels) value = srgb_to_linear(value);
+}
+
+/// Where R, G and B are stored among channels of these names: three times the one of grey where
+/// there is but one, with or without alpha. Throws ImageError.
+inline std::array<int, 3> color_channels(const std::filesystem::path& file,
+                                         std::span<const std::string> names) {
+  const int count = static_cast<int>(names.size());
+  std::array<int, 3> rgb{-1, -1, -1};
+  for (int i = count - 1; i >= 0; --i)
+    for (int c = 0; c < 3; ++c)
+      if (names[i].size() == 1 && (names[i][0] == "RGB"[c] || names[i][0] == "rgb"[c])) rgb[c] = i;
+  if (rgb[0] >= 0 && rgb[1] >= 0 && rgb[2] >= 0) return rgb;
+  if (count < 1 || count > 2) fail_image(file, "no channels named R, G and B");
+  const int grey = count == 2 && names[0] == "A" ? 1 : 0;
+  return {grey, grey, grey};
 }
 
 }  // namespace translucube

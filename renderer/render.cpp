@@ -201,22 +201,17 @@ std::string explain_sample(const Scene& scene, int x, int y, std::uint32_t sampl
 
 std::string transport_name(const Scene& scene) { return transport_name(scene.interior); }
 
+std::optional<ExplorableBasis> explorable_basis(const Scene& scene) {
+  if (!scene.spread) return std::nullopt;
+  return ExplorableBasis{scene.spread->bins(), scene.unit_mm, scene.lanes.front()};
+}
+
 ExplorableFilm explorable_film(const Scene& scene, const Film& film) {
   return explorable_film(scene.spread.value().bins(), scene.unit_mm, film);
 }
 
 Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int threads) {
   return develop_explorable(film, scene.lanes.front(), threads);
-}
-
-Image develop_shares(const Scene& scene, const Film& film) {
-  return develop_shares(scene.spread.value().bins(), film, scene.lanes.front());
-}
-
-Image develop_shares(const Scene& scene, const Film& film, const Absorber& absorber,
-                     double sigma_a_peak) {
-  return develop_shares(scene.spread.value().bins(), film,
-                        make_lane(absorber, sigma_a_peak * scene.unit_mm));
 }
 
 }  // namespace translucube

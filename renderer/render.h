@@ -13,11 +13,15 @@
 #include <string_view>
 #include <variant>
 
+#include "renderer/film/absorption.h"
 #include "renderer/film/explorable.h"
 #include "renderer/film/film.h"
+#include "renderer/film/length_bins.h"
 #include "renderer/scene/spec.h"
 
 namespace translucube {
+
+struct ExplorableBasis;
 
 struct SampleTarget {
   std::uint32_t samples = 64;  ///< camera samples per pixel
@@ -87,14 +91,13 @@ RenderResult render(const Scene& scene, const Quality& quality, int threads = 0,
 /// Stats of a film rendered by any means.
 RenderStats stats_of(const Scene& scene, const Film& film, double seconds, int threads);
 
+/// How the films of an explorable scene are developed; empty where the scene is not explorable.
+std::optional<ExplorableBasis> explorable_basis(const Scene& scene);
+
 /// What is kept of an explorable scene's film.
 ExplorableFilm explorable_film(const Scene& scene, const Film& film);
 /// The picture through the material of the film's own scene.
 Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int threads = 0);
-/// A film that is still being traced, through the material of its own scene or another absorber.
-Image develop_shares(const Scene& scene, const Film& film);
-Image develop_shares(const Scene& scene, const Film& film, const Absorber& absorber,
-                     double sigma_a_peak);
 
 /// A fingerprint of the renderer's sources: results are kept by it.
 std::string_view engine_version();

@@ -26,9 +26,9 @@ set(rooms
   "api:"
 
   "server/base: api/base picture"
-  "server/store: server/base api/base api/request renderer renderer/film server/store/sqlite"
+  "server/store: server/base api/base api/request api/answer renderer renderer/film server/store/sqlite"
   "server/store/sqlite: server/base server/store api/answer"
-  "server/pictures: server/base server/store api/base api/request api/answer renderer renderer/film picture picture/sheet"
+  "server/pictures: server/base server/store api/base api/request api/answer renderer renderer/base renderer/film picture picture/sheet"
   "server/worker: server/base server/store server/pictures api/base api/request api/answer renderer renderer/base renderer/film renderer/light picture"
   "server/service: server/base server/store server/pictures server/worker api/base api/request api/answer picture"
   "server/http: server/base api/base picture"
@@ -47,7 +47,7 @@ set(forbidden_server "^(embree[0-9]*|OpenImageIO|OpenColorIO|OpenEXR|Imath|hwy|a
 set(doors Embree assimp OpenEXR OpenImageIO OpenColorIO FreeType httplib SQLite OpenSSL prometheus)
 set(header_Embree "^embree[0-9]*/")
 set(header_assimp "^assimp/")
-set(header_OpenEXR "^(OpenEXR|Imath)/|^picture/exr/")
+set(header_OpenEXR "^(OpenEXR|Imath)/|^picture/exr/file\\.h$")
 set(header_OpenImageIO "^OpenImageIO/|^picture/oiio/file\\.h$")
 set(header_OpenColorIO "^OpenColorIO/")
 set(header_FreeType "^ft2build\\.h$|^freetype/")
@@ -57,7 +57,7 @@ set(header_OpenSSL "^openssl/")
 set(header_prometheus "^prometheus/")
 set(door_Embree "renderer/shape/embree_mesh.cpp")
 set(door_assimp "renderer/shape/triangle_mesh.cpp")
-set(door_OpenEXR "picture/exr/[a-z_]+.(cpp|h)|picture/image_io.cpp")
+set(door_OpenEXR "picture/exr/[a-z_]+.(cpp|h)")
 set(door_OpenImageIO "picture/oiio/[a-z_]+.(cpp|h)")
 set(door_OpenColorIO "picture/color.cpp")
 set(door_FreeType "picture/sheet/text.cpp")

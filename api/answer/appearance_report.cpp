@@ -35,7 +35,8 @@ json incidence(const SlabAppearance::AtIncidence& at) {
           {"transmitted", with_errors(colour(value.transmitted), colour(error.transmitted))}};
 }
 
-void add_estimate(json& object, const char* key, const std::optional<SlabAppearance::Estimate>& estimate) {
+void add_estimate(json& object, const char* key,
+                  const std::optional<SlabAppearance::Estimate>& estimate) {
   object[key] = estimate ? json(estimate->value) : json(nullptr);
   object["standard_error"][key] = estimate ? json(estimate->standard_error) : json(nullptr);
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 // OpenImageIO pulls in 260 shared libraries, a fifth to a third of a second of dynamic linking. So
-// it is linked to a module of its own (renderer/oiio), which is loaded when a file first needs it:
-// a picture that is not EXR.
+// it is linked to a module of its own (picture.cpp and file.cpp of this folder), which is loaded
+// when a file first needs it: a picture that is not EXR.
 
 #include <filesystem>
 
@@ -10,7 +10,7 @@
 
 namespace translucube {
 
-/// What the module can do; as in image_io.h, but for the check of the pixels.
+/// What the module can do: what image_io.h declares, but for the checks of sizes and pixels.
 struct ImageCodecs {
   Image (*read)(const std::filesystem::path& file);
   ImageMetadata (*read_metadata)(const std::filesystem::path& file);

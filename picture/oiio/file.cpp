@@ -1,13 +1,12 @@
 #include "picture/oiio/file.h"
 
 #include <OpenImageIO/filesystem.h>
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <mutex>
+
+#include "picture/output_file.h"
 
 namespace translucube {
 namespace {
@@ -21,55 +20,33 @@ void use_one_thread() {
   });
 }
 
-/// Writes to a file and remembers the first error. It reports success to the codec whatever
-/// happens, because libjpeg answers a failed write with exit(); finish() tells the truth.
-class FileSink final : public OIIO::Filesystem::IOProxy {
+/// A file as OpenImageIO's codecs write it: one place after the other, but for those that they turn
+/// back to.
+class FileProxy final : public OIIO::Filesystem::IOProxy {
  public:
-  explicit FileSink(const std::filesystem::path& file)
-      : IOProxy(file.string(), Write),
-        descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) error_number_ = errno;
-  }
-  ~FileSink() override { finish(); }
-  FileSink(const FileSink&) = delete;
-  FileSink& operator=(const FileSink&) = delete;
+  FileProxy(const std::filesystem::path& name, OutputFile& file)
+      : IOProxy(name.string(), Write), file_(file) {}
 
   // Not "file": OpenImageIO would take that for its own class and reach for its FILE*.
   const char* proxytype() const override { return "translucube"; }
-  bool opened() const override { return descriptor_ >= 0; }
+  bool opened() const override { return file_.is_open(); }
   std::size_t size() const override { return static_cast<std::size_t>(end_); }
 
   std::size_t read(void* buffer, std::size_t bytes) override {
-    const ssize_t got = ::pread(descriptor_, buffer, bytes, m_pos);
-    if (got > 0) m_pos += got;
-    return got > 0 ? static_cast<std::size_t>(got) : 0;
+    const std::size_t got = file_.read(buffer, bytes, m_pos);
+    m_pos += static_cast<std::int64_t>(got);
+    return got;
   }
   std::size_t write(const void* buffer, std::size_t bytes) override {
-    const char* from = static_cast<const char*>(buffer);
-    for (std::size_t done = 0; error_number_ == 0 && done < bytes;) {
-      const ssize_t put =
-          ::pwrite(descriptor_, from + done, bytes - done, m_pos + static_cast<off_t>(done));
-      if (put > 0)
-        done += static_cast<std::size_t>(put);
-      else if (errno != EINTR)
-        error_number_ = put < 0 ? errno : EIO;
-    }
+    file_.write(buffer, bytes, m_pos);
     m_pos += static_cast<std::int64_t>(bytes);
     end_ = std::max(end_, m_pos);
     return bytes;
   }
 
-  /// 0 if every byte was handed to the system, else the errno of the first failure.
-  int finish() {
-    if (descriptor_ >= 0 && ::close(descriptor_) != 0 && error_number_ == 0) error_number_ = errno;
-    descriptor_ = -1;
-    return error_number_;
-  }
-
  private:
-  int descriptor_;
+  OutputFile& file_;
   std::int64_t end_ = 0;
-  int error_number_ = 0;
 };
 
 }  // namespace
@@ -81,8 +58,9 @@ std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file) 
   if (auto input = OIIO::ImageInput::open(file.string())) return input;
   const std::string problem = OIIO::geterror();
   // A stored artifact or a download may have no extension to go by.
-  for (const ImageFormat format : {ImageFormat::png, ImageFormat::tiff, ImageFormat::jpeg}) {
-    auto input = OIIO::ImageInput::create(std::string(name(format)));
+  for (const ImageFormatRow& row : image_formats) {
+    if (row.library != ImageLibrary::open_image_io) continue;
+    auto input = OIIO::ImageInput::create(std::string(row.name));
     OIIO::ImageSpec spec;
     if (input && input->open(file.string(), spec)) return input;
   }
@@ -94,14 +72,15 @@ void write_image_file(const std::filesystem::path& file, ImageFormat format,
                       const OIIO::ImageSpec& spec,
                       const std::function<bool(OIIO::ImageOutput&)>& write) {
   use_one_thread();
-  FileSink sink(file);
-  if (!sink.opened()) fail_image(file, std::strerror(sink.finish()));
+  OutputFile sink(file);
+  if (!sink.is_open()) fail_image(file, std::strerror(sink.finish()));
+  FileProxy proxy(file, sink);
   auto output = OIIO::ImageOutput::create(std::string(name(format)));
-  if (!output || !output->set_ioproxy(&sink))
+  if (!output || !output->set_ioproxy(&proxy))
     fail_image(file, "this OpenImageIO cannot write " + std::string(name(format)));
   const bool written = output->open(file.string(), spec) && write(*output) && output->close();
   const std::string problem = output->geterror();
-  output.reset();  // before the sink that it writes to
+  output.reset();  // before what it writes to
   if (const int error_number = sink.finish()) fail_image(file, std::strerror(error_number));
   if (!written) fail_image(file, "cannot be written (" + problem + ")");
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "picture/reduce.h"
+#include "picture/srgb.h"
 
 namespace translucube {
 
@@ -13,13 +14,11 @@ namespace {
 
 constexpr float background_code = 0.25f, frame_code = 0.5f, ink_code = 0.92f;
 
-/// sRGB, IEC 61966-2-1.
-float decoded(float code) { return std::pow((code + 0.055f) / 1.055f, 2.4f); }
-
 }  // namespace
 
 SheetLook scene_linear_look() {
-  return {[](Image&) {}, decoded(background_code), decoded(frame_code), decoded(ink_code)};
+  return {[](Image&) {}, srgb_to_linear(background_code), srgb_to_linear(frame_code),
+          srgb_to_linear(ink_code)};
 }
 
 // The greys are code values of the display, not colours of the scene, so that a view's tone mapping

@@ -64,7 +64,8 @@ struct SheetLayout {
 
   /// Holds a thumbnail, or the state of one that is missing. Throws std::out_of_range.
   Box cell(const SheetCell& cell) const;
-  /// In the middle of the cell: smaller than it only for tiny or very long pictures.
+  /// The place of the thumbnail, in the middle of the cell: smaller than it only for tiny or very
+  /// long pictures.
   Box thumbnail(const SheetCell& cell) const;
 };
 

@@ -64,7 +64,7 @@ struct Font::Impl {
     double width = 0;  ///< em
   };
 
-  /// In font units, so that positions do not depend on the size.
+  /// A line of glyphs, in font units, so that positions do not depend on the size.
   Line set(std::string_view text) const {
     Line line;
     while (!text.empty()) {

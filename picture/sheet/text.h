@@ -51,7 +51,7 @@ class Font {
 
 /// The first of the files that exists. Throws TextError, which names them all, if none does.
 Font find_font(std::span<const std::filesystem::path> files);
-/// Of the list that CMake's TRANSLUCUBE_FONTS configures.
+/// The first that exists of the fonts that CMake's TRANSLUCUBE_FONTS lists.
 Font find_font();
 
 /// A label for each value: the shortest text of the value rounded to four significant digits, or to

@@ -13,14 +13,14 @@
 
 namespace translucube {
 
-/// From RGB to RGB, row-major.
+/// A linear map from RGB to RGB, row-major.
 using ColorOperator = std::array<float, 9>;
 inline constexpr ColorOperator identity_operator{1, 0, 0, 0, 1, 0, 0, 0, 1};
 inline Rgb apply_operator(const ColorOperator& m, Rgb c) {
   return {m[0] * c.r + m[1] * c.g + m[2] * c.b, m[3] * c.r + m[4] * c.g + m[5] * c.b,
           m[6] * c.r + m[7] * c.g + m[8] * c.b};
 }
-/// First b, then a.
+/// The operator of b first, then a.
 inline ColorOperator multiply(const ColorOperator& a, const ColorOperator& b) {
   ColorOperator m{};
   for (int i = 0; i < 3; ++i)
@@ -61,7 +61,7 @@ class ColorOperatorTable {
     return m;
   }
 
-  // For those that apply many at a time.
+  // What those read who apply many at a time.
   static constexpr int fraction_bits = Grid::fraction_bits;
   static constexpr std::uint32_t fraction_mask = Grid::fraction_mask;
   const Node* nodes() const { return nodes_.data(); }

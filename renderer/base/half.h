@@ -8,7 +8,8 @@
 
 namespace translucube {
 
-/// Exact, subnormals included. The exponent's bias is put right by a multiplication.
+/// The value of a half, exact, subnormals included. The exponent's bias is put right by a
+/// multiplication.
 inline float half_to_float(std::uint16_t half) {
   const std::uint32_t magnitude = std::uint32_t(half & 0x7fffu) << 13;
   const std::uint32_t sign = std::uint32_t(half & 0x8000u) << 16;
@@ -16,7 +17,7 @@ inline float half_to_float(std::uint16_t half) {
       std::bit_cast<std::uint32_t>(std::bit_cast<float>(magnitude) * 0x1p112f) | sign);
 }
 
-/// To the nearest, ties to even. |value| must be less than 65504.
+/// The half nearest to a value, ties to even. |value| must be less than 65504.
 inline std::uint16_t float_to_half(float value) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(std::fabs(value));
   const std::uint32_t sign = std::bit_cast<std::uint32_t>(value) >> 16 & 0x8000u;

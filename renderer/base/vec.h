@@ -1,5 +1,8 @@
 #pragma once
 
+// In this room stands what numbers need: vectors and colours (here), random numbers, spectra,
+// tables, SIMD, threads. Whatever knows of light in a scene stands elsewhere.
+
 #include <array>
 #include <cmath>
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 #include <variant>
 
 #include "renderer/base/color_operator.h"
@@ -38,12 +39,15 @@ class SpectralLane {
  public:
   /// `sigma_a_peak` [1 / unit of l] >= 0.
   SpectralLane(const SpectralAbsorber& absorber, double sigma_a_peak);
+  /// Any operator, over 1 + sigma_a_peak l.
+  SpectralLane(double sigma_a_peak, ColorOperatorTable table)
+      : sigma_a_peak_(sigma_a_peak), table_(std::move(table)) {}
 
   Rgb apply(Rgb radiance, double length) const {
     return apply_operator(table_.at(1 + sigma_a_peak_ * length), radiance);
   }
   double sigma_a_peak() const { return sigma_a_peak_; }
-  /// Over 1 + sigma_a_peak l.
+  /// The operators over 1 + sigma_a_peak l.
   const ColorOperatorTable& table() const { return table_; }
 
  private:
@@ -56,13 +60,7 @@ struct OpaqueLane {
   Rgb apply(Rgb radiance, double length) const { return length > 0 ? Rgb{0, 0, 0} : radiance; }
 };
 
-/// Not an absorber but a view: radiance times length, whose mean over a clear image is the mean
-/// path.
-struct LengthLane {
-  Rgb apply(Rgb radiance, double length) const { return radiance * static_cast<float>(length); }
-};
-
-using Lane = std::variant<ClearLane, RgbLane, SpectralLane, OpaqueLane, LengthLane>;
+using Lane = std::variant<ClearLane, RgbLane, SpectralLane, OpaqueLane>;
 
 /// The lane of an absorber. `sigma_a_peak` [1 / unit of l] >= 0, may be infinite.
 Lane make_lane(const Absorber& absorber, double sigma_a_peak);

@@ -1,5 +1,7 @@
 #include "renderer/film/explorable_batch.h"
 
+#include <array>
+
 #include "renderer/base/half.h"
 
 // This file is compiled once for each instruction set: the order matters.
@@ -27,14 +29,14 @@ HWY_INLINE Number row(const float* m, Number r, Number g, Number b) {
 
 void DevelopHalves(std::span<const ColorOperator> operators, const std::uint16_t* halves,
                    std::size_t plane, std::size_t pixels, float* developed) {
-  alignas(64) float sum[3][pixels_at_once] = {};
+  alignas(64) std::array<std::array<float, pixels_at_once>, 3> sum{};
   const std::size_t lanes = hn::Lanes(D()), whole = pixels - pixels % lanes;
   for (const ColorOperator& m : operators) {
     const std::uint16_t *r = halves, *g = r + plane, *b = g + plane;
     for (std::size_t i = 0; i < whole; i += lanes) {
       const Real red = load_halves(r + i), green = load_halves(g + i), blue = load_halves(b + i);
       for (int c = 0; c < 3; ++c)
-        hn::StoreU((load(&sum[c][i]) + row(&m[3 * c], red, green, blue)).v, D(), &sum[c][i]);
+        store(load(sum[c], i) + row(&m[3 * c], red, green, blue), sum[c], i);
     }
     for (std::size_t i = whole; i < pixels; ++i)
       for (int c = 0; c < 3; ++c)

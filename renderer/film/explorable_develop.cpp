@@ -46,7 +46,9 @@ Image develop_explorable(const ExplorableFilm& film, const Absorber& absorber, d
   return develop_explorable(film, make_lane(absorber, sigma_a_peak * film.unit_mm), threads);
 }
 
-Image develop_shares(const LengthBins& bins, const Film& film, const Lane& lane) {
+namespace {
+
+Image summed(const LengthBins& bins, const Film& film, const Lane& lane) {
   const std::vector<float> scales(static_cast<std::size_t>(film.lanes), to_mean(film));
   const std::vector<ColorOperator> all = operators(bins, scales, lane);
   Image image(film.width, film.height);
@@ -60,6 +62,17 @@ Image develop_shares(const LengthBins& bins, const Film& film, const Lane& lane)
       out[2] += light.b;
     }
   return image;
+}
+
+}  // namespace
+
+Image develop_shares(const ExplorableBasis& basis, const Film& film) {
+  return summed(basis.bins, film, basis.own);
+}
+
+Image develop_shares(const ExplorableBasis& basis, const Film& film, const Absorber& absorber,
+                     double sigma_a_peak) {
+  return summed(basis.bins, film, make_lane(absorber, sigma_a_peak * basis.unit_mm));
 }
 
 }  // namespace translucube

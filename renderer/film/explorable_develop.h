@@ -16,7 +16,17 @@ Image develop_explorable(const ExplorableFilm& film, const Lane& lane, int threa
 Image develop_explorable(const ExplorableFilm& film, const Absorber& absorber, double sigma_a_peak,
                          int threads = 0);
 
-/// A film that is still being traced, as the float sums stand: no halves are made of it.
-Image develop_shares(const LengthBins& bins, const Film& film, const Lane& lane);
+/// What the lanes of a scene's explorable films stand for, and the absorber of its own material.
+struct ExplorableBasis {
+  LengthBins bins;
+  double unit_mm = 1;
+  Lane own;
+};
+
+/// A film that is still being traced, as the float sums stand, through the absorber of its own
+/// material or another one: no halves are made of it.
+Image develop_shares(const ExplorableBasis& basis, const Film& film);
+Image develop_shares(const ExplorableBasis& basis, const Film& film, const Absorber& absorber,
+                     double sigma_a_peak);
 
 }  // namespace translucube

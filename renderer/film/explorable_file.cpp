@@ -3,7 +3,7 @@
 #include <charconv>
 #include <sstream>
 
-#include "picture/image_io.h"
+#include "picture/half_image.h"
 #include "picture/image_io_rules.h"
 
 namespace translucube {

@@ -9,7 +9,7 @@ TraceCounters& TraceCounters::operator+=(const TraceCounters& other) {
   camera_samples += other.camera_samples;
   flights += other.flights;
   boundary_events += other.boundary_events;
-  connections += other.connections;
+  light_samples += other.light_samples;
   nan_samples += other.nan_samples;
   truncated_energy += other.truncated_energy;
   return *this;
@@ -34,6 +34,7 @@ PictureSums::PictureSums(const std::vector<float>& sum, std::size_t size, bool s
 }
 
 void merge(Film& film, const PassFilm& pass) {
+  if (film.passes == 0) film = Film(pass.width, pass.height, pass.lanes, pass.shares);
   if (pass.width != film.width || pass.height != film.height || pass.lanes != film.lanes ||
       pass.shares != film.shares)
     throw std::invalid_argument("films of different shape cannot be merged");

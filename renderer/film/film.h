@@ -18,7 +18,7 @@ struct TraceCounters {
   std::uint64_t camera_samples = 0;
   std::uint64_t flights = 0;          ///< free flights and large steps inside the body
   std::uint64_t boundary_events = 0;  ///< Fresnel or microfacet events
-  std::uint64_t connections = 0;      ///< next-event estimations
+  std::uint64_t light_samples = 0;    ///< lights looked for: next-event estimations
   std::uint64_t nan_samples = 0;      ///< non-finite contributions: a bug, fails the render
   double truncated_energy = 0;  ///< throughput given up at the path cap, per camera sample sum
 
@@ -57,7 +57,8 @@ struct Film {
   Film(int width, int height, int lanes, bool shares = false);
 };
 
-/// Adds the next pass (pass.index == film.passes) (Chan et al. 1979, the pairwise update).
+/// Adds the next pass (pass.index == film.passes) (Chan et al. 1979, the pairwise update). A film
+/// without passes takes the shape of its first one.
 void merge(Film& film, const PassFilm& pass);
 
 /// The sums of the picture that errors refer to: those of lane 0, or of all lanes together where

@@ -97,6 +97,8 @@ Header header_of(const char (&magic)[8], const AnyFilm& film) {
   header.height = film.height;
   header.lanes = film.lanes;
   header.shares = film.shares;
+  header.counters = film.counters;
+  header.cpu_seconds = film.cpu_seconds;
   return header;
 }
 
@@ -107,8 +109,6 @@ std::string to_bytes(const PassFilm& film) {
   header.pass_index = film.pass.index;
   header.first_sample = film.pass.first_sample;
   header.samples = film.pass.count;
-  header.counters = film.counters;
-  header.cpu_seconds = film.cpu_seconds;
   return pack(header, {&film.sum});
 }
 
@@ -116,8 +116,6 @@ std::string to_bytes(const Film& film) {
   Header header = header_of(film_magic, film);
   header.pass_index = film.passes;
   header.samples = film.samples;
-  header.counters = film.counters;
-  header.cpu_seconds = film.cpu_seconds;
   return pack(header, {&film.sum, &film.m2});
 }
 

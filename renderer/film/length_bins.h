@@ -50,7 +50,7 @@ class BinSpread {
   /// from the last node on all in the last bin.
   BinWeights operator()(double length) const;
 
-  // For those that spread many at a time.
+  // What those read who spread many at a time.
   double log_first() const { return log_first_; }
   double inverse_step() const { return inverse_step_; }
   const std::array<float, 3>& short_nodes() const { return short_nodes_; }

@@ -14,7 +14,7 @@ enum class BackdropKind {
   light_table,  ///< it shines by itself and reflects nothing
   print,        ///< it reflects as a Lambertian surface what falls on it
 };
-/// Of the light and the dark parts.
+/// How the light and the dark parts lie.
 enum class Pattern {
   plain,    ///< light everywhere
   checker,  ///< squares, half a period wide
@@ -30,11 +30,11 @@ struct BackdropSpec {
   friend bool operator==(const BackdropSpec&, const BackdropSpec&) = default;
 };
 
-/// In contact, the plane lies this far behind the body, in its unit: an air film without thickness
+/// A plane in contact lies this far behind the body, in its unit: an air film without thickness
 /// to the eye. There is no optical contact; the body's face stays one against air.
 inline constexpr double contact_gap = 1e-6;
 
-/// In the body's coordinates.
+/// The plane as the transport meets it, in the body's coordinates.
 struct Backdrop {
   BackdropKind kind = BackdropKind::light_table;
   Pattern pattern = Pattern::plain;

@@ -174,11 +174,6 @@ void ImageEnvironment::build_irradiance() {
   }
 }
 
-Rgb ImageEnvironment::irradiance(Vec3 n) const {
-  const std::array<Rgb, 3> orders = irradiance_by_order(n);
-  return orders[0] + orders[1] + orders[2];
-}
-
 std::array<Rgb, 3> ImageEnvironment::irradiance_by_order(Vec3 n) const {
   const std::array<double, 9> basis = quadratic_basis(n);
   std::array<Rgb, 3> orders;
@@ -313,7 +308,7 @@ std::vector<EnvironmentSample> ImageEnvironment::sample(std::span<const Sample2>
     }
     batch.find(geometry());
     for (std::size_t i = 0; i < batch.size; ++i) {
-      const Vec3 towards{batch.x[i], batch.y[i], batch.z[i]};
+      const Vec3 towards = batch.direction[i];
       samples[first + i] = {towards,
                             seen(towards, value_at({batch.u[i], batch.v[i], batch.sin_theta[i]}))};
     }

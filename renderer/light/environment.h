@@ -1,5 +1,9 @@
 #pragma once
 
+// In this room stands where light comes from: environments (here), the backdrop behind a body
+// (backdrop.h), and the lights that paths look for (light_list.h). A light knows directions and
+// densities; it knows no body and no path.
+
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -23,7 +27,7 @@ struct EnvironmentSample {
   EnvironmentValue value;
 };
 
-/// The same radiance from everywhere.
+/// An environment of the same radiance from everywhere.
 struct UniformEnvironment {
   Rgb radiance{1, 1, 1};
 };
@@ -31,7 +35,7 @@ struct UniformEnvironment {
 /// What of a map is seen: a plane behind the body hides what lies towards -z.
 enum class EnvironmentSide { all, front };
 
-/// Where a direction lies in a map.
+/// The place of a direction in a map.
 struct MapCoordinates {
   float x, y;       ///< in pixels, centres at halves
   float sin_theta;  ///< polar angle from +y
@@ -53,7 +57,7 @@ class ImageEnvironment {
     return seen(direction, value_at(coordinates(direction)));
   }
   EnvironmentSide side() const { return side_; }
-  /// Of the map, whether it is hidden or not.
+  /// What the map has there, whether it is hidden or not.
   EnvironmentValue value_at(MapCoordinates at) const;
   MapGeometry geometry() const;
   /// Calls the pixels for value_at() into the cache.
@@ -61,14 +65,13 @@ class ImageEnvironment {
   /// Draws a direction in proportion to luminance times solid angle, a pixel cell at a time; nearby
   /// u.u give nearby directions, so that stratified numbers give stratified light.
   EnvironmentSample sample(Sample2 u) const;
-  /// Many of them, quickest where u.u ascends; what they read of a map larger than the caches is on
-  /// its way meanwhile. Directions in single precision.
+  /// Many directions, quickest where u.u ascends; what they read of a map larger than the caches is
+  /// on its way meanwhile. Directions in single precision.
   std::vector<EnvironmentSample> sample(std::span<const Sample2> u) const;
   Vec3 direction(MapCoordinates at) const;
-  /// Irradiance of a surface with normal n, by the spherical harmonics up to the second order
-  /// (Ramamoorthi and Hanrahan 2001): within a few percent, and possibly negative under a hard sun.
-  Rgb irradiance(Vec3 n) const;
-  /// The same by order, 0 to 2: of a normal at an angle from n, averaged about n, it is their sum
+  /// Irradiance of a surface with normal n, by the spherical harmonics of the orders 0 to 2
+  /// (Ramamoorthi and Hanrahan 2001), whose sum is within a few percent, and possibly negative
+  /// under a hard sun. Averaged over the normals at an angle from n, the irradiance is their sum
   /// with the Legendre polynomials of the angle's cosine as weights.
   std::array<Rgb, 3> irradiance_by_order(Vec3 n) const;
 
@@ -91,7 +94,7 @@ class ImageEnvironment {
   };
   Draw draw_block(double u, std::size_t at_least) const;
   void draw_row(Draw& draw) const;
-  /// In the map, but for sin_theta.
+  /// A place in the map, its sin_theta left out.
   MapCoordinates draw_cell(const Draw& draw, double v) const;
   Rgb bilinear(float x, float y) const;
   double cell_pdf(int x, int y, double sin_theta) const;

@@ -2,10 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <list>
 #include <memory>
-#include <mutex>
 
+#include "renderer/base/recently_used.h"
 #include "renderer/light/environment.h"
 
 namespace translucube {
@@ -21,7 +20,7 @@ class EnvironmentCache {
                                               EnvironmentSide side = EnvironmentSide::all);
 
  private:
-  /// Of images that are kept, in pixels (24 bytes each), the last one apart.
+  /// The most that is kept, in pixels (24 bytes each), the last one apart.
   static constexpr std::uint64_t most_pixels = std::uint64_t{1} << 23;
 
   struct Key {
@@ -32,17 +31,7 @@ class EnvironmentCache {
     EnvironmentSide side;
     friend bool operator==(const Key&, const Key&) = default;
   };
-  struct Entry {
-    Key key;
-    std::uint64_t pixels;
-    std::shared_ptr<const ImageEnvironment> environment;
-  };
-
-  std::shared_ptr<const ImageEnvironment> find(const Key& key);
-  void keep(Entry entry);
-
-  std::mutex mutex_;
-  std::list<Entry> entries_;  ///< the latest first
+  RecentlyUsed<Key, ImageEnvironment> environments_{most_pixels};
 };
 
 }  // namespace translucube

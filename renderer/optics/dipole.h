@@ -42,7 +42,6 @@ class DipoleProfile {
   /// sigma_a finite; reduced_sigma_s > 0, +infinity for the limit in which R_d is local.
   DipoleProfile(double sigma_a, double reduced_sigma_s, double ior);
 
-  double reduced_albedo() const { return albedo_; }
   double z_real() const { return z_[0]; }
   /// R_d(r) [1 / unit^2] (eq. 4). Finite densities only.
   double reflectance(double r) const;
@@ -78,7 +77,8 @@ class DipoleRadii {
   double sample(double u) const { return profile_.sample(u, reach_); }
 
  private:
-  /// In units of the body; the intersection of single-precision meshes tells no more apart.
+  /// Radii below this are not told apart, in units of the body: the intersection of
+  /// single-precision meshes is no better.
   static constexpr double smallest_radius = 1e-8;
 
   DipoleProfile profile_;

@@ -30,10 +30,10 @@ struct RoughInterface {
 using AnyInterface = std::variant<SmoothInterface, RoughInterface>;
 AnyInterface make_interface(const Material& material);
 
-/// One lobe (reflection or transmission) of an interface in one direction.
+/// What a body sends to wo of light from a direction wi.
 struct LobeValue {
   double f_cos = 0;  ///< f_basic |cos theta_i|
-  double pdf = 0;  ///< of sample_rough's direction in this lobe, given that both lobes are followed
+  double pdf = 0;    ///< the density with which the body's own sampling finds wi
 };
 
 }  // namespace translucube

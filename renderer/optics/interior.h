@@ -1,5 +1,9 @@
 #pragma once
 
+// In this room stands what happens to light at and in a body, in closed form or tabulated: the
+// material and its cube, interfaces with their microfacets, media, and interiors (here). It knows
+// no shape, no path and no film.
+//
 // What lies behind the interface, and so which transport runs. To add an interior: its struct with
 // its facts, the variant, make_interior(), transport_name(), and what the transport does with it
 // (the table in renderer/transport/tracer.h).

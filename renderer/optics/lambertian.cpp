@@ -39,11 +39,6 @@ double InterfacedLambertian::transmittance(double mu) const {
   return table_[i] + (x - i) * (table_[i + 1] - table_[i]);
 }
 
-LobeValue InterfacedLambertian::evaluate(Vec3 wo, Vec3 wi) const {
-  const LobeValue out = emit(wi);
-  return {transmittance(wo.z) * out.f_cos, out.pdf};
-}
-
 LobeValue InterfacedLambertian::emit(Vec3 wi) const {
   if (wi.z <= 0) return {};
   return {transmittance(wi.z) * norm_ * wi.z, wi.z / pi};

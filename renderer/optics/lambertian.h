@@ -20,13 +20,13 @@ class InterfacedLambertian {
   explicit InterfacedLambertian(const SmoothInterface& interface);
   explicit InterfacedLambertian(const RoughInterface& interface);
 
-  /// The part that went through the body, without the interface's own reflection:
-  /// T(mu_o) T(mu_i) / (pi n^2 (1 - r_i)), r_i the diffuse internal reflectance of the interface.
-  LobeValue evaluate(Vec3 wo, Vec3 wi) const;
-  /// The share of light from mu that crosses the interface.
+  // The part of light from wo that went through the body, without the interface's own reflection,
+  // is T(mu_o) T(mu_i) / (pi n^2 (1 - r_i)), r_i the diffuse internal reflectance of the interface.
+
+  /// T, the share of light from mu that crosses the interface.
   double transmittance(double mu) const;
-  /// What comes back of light that has crossed it: evaluate() over transmittance(wo.z). All of it:
-  /// the integral over wi is 1 to rounding.
+  /// The part of that light that comes back towards wi: T(mu_i) / (pi n^2 (1 - r_i)). In all
+  /// directions it is all of it: the integral over wi is 1 to rounding.
   LobeValue emit(Vec3 wi) const;
   /// Cosine-distributed; density mu_i / pi.
   static Vec3 sample(Sample2 u);

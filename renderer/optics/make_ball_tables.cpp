@@ -21,7 +21,7 @@ struct Exit {
   double mu, length;
 };
 
-/// From the centre of a ball with this optical radius until the surface; lengths in mean free
+/// A walk from the centre of a ball with this optical radius to its surface; lengths in mean free
 /// paths.
 Exit leave_ball(double radius, const std::vector<Table>& below, Rng& rng) {
   Vec3 p;

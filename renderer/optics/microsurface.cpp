@@ -16,12 +16,6 @@ double depth_beyond(double depth) {
                      : -std::log1p(-std::exp(-depth));
 }
 
-/// |d m / d wi| of refraction (Walter 2007, eq. 17), for basic radiance.
-double refraction_jacobian(double wo_m, double wi_m, double eta) {
-  const double denominator = wo_m + eta * wi_m;
-  return eta * eta * std::fabs(wi_m) / (denominator * denominator);
-}
-
 Vec3 mirrored(Vec3 w) { return {w.x, w.y, -w.z}; }
 
 }  // namespace
@@ -38,39 +32,15 @@ MicroSample MicroVertex::sample(Sample2 u) const {
   const Vec3 m = ggx_.sample_visible(w_, u);
   const double w_m = dot(w_, m);
   if (w_m <= 0) {  // rounding at grazing incidence: pass as if reflected
-    s.reflected = {w_, 1, 0, 0};
+    s.reflected = {w_, 1, 0};
     return s;
   }
-  const double density = ggx_.visible_d(w_, m);
   const double f = fresnel(w_m, eta_);
   const Vec3 up = reflect(w_, m);
-  s.reflected = {up, f, escape(up, depth_), density / (4 * w_m)};
+  s.reflected = {up, f, escape(up, depth_)};
   if (const auto down = refract(w_, m, eta_))
-    s.transmitted = {*down, 1 - f, escape(mirrored(*down), depth_beyond(depth_)),
-                     density * refraction_jacobian(w_m, dot(*down, m), eta_)};
+    s.transmitted = {*down, 1 - f, escape(mirrored(*down), depth_beyond(depth_))};
   return s;
-}
-
-LobeValue MicroVertex::evaluate(Vec3 wi_first) const {
-  const Vec3 wi = to_first_side(wi_first);  // the mirror is its own inverse
-  if (wi.z > 0) {
-    const Vec3 sum = w_ + wi;
-    if (sum.z <= 0) return {};
-    const Vec3 m = normalize(sum);
-    const double w_m = dot(w_, m);
-    if (w_m <= 0) return {};
-    const double pdf = ggx_.visible_d(w_, m) / (4 * w_m);
-    return {fresnel(w_m, eta_) * escape(wi, depth_) * pdf, pdf};
-  }
-  // Walter 2007, eq. 16: m along w + eta wi, turned to this side.
-  Vec3 m = w_ + eta_ * wi;
-  const double norm = length(m);
-  if (norm == 0) return {};
-  m = m * ((m.z < 0 ? -1 : 1) / norm);
-  const double w_m = dot(w_, m), wi_m = dot(wi, m);
-  if (w_m <= 0 || wi_m >= 0) return {};
-  const double pdf = ggx_.visible_d(w_, m) * refraction_jacobian(w_m, wi_m, eta_);
-  return {(1 - fresnel(w_m, eta_)) * escape(mirrored(wi), depth_beyond(depth_)) * pdf, pdf};
 }
 
 void MicroVertex::advance(const MicroSample& s, double u, double v) {
@@ -106,8 +76,8 @@ DirectionalAlbedo directional_albedo(const RoughInterface& interface, double eta
   for (std::uint32_t i = 0; i < n; ++i) {
     PathSampler sampler(0x5eed, i);
     cross_microsurface(
-        interface, eta, wo, sampler, [](const MicroVertex&) {},
-        [&](Vec3 wi, double weight, double) {
+        interface, eta, wo, sampler,
+        [&](Vec3 wi, double weight) {
           (wi.z > 0 ? albedo.reflected : albedo.transmitted) += weight;
         },
         1e-4);  // a table's noise would stay in every picture made with it

@@ -9,8 +9,8 @@
 // per depth and is out of the surface where tau falls below 0; seen from the other side of the
 // interface a point at depth tau lies at tau' = -ln(1 - exp(-tau)). At each collision the ray meets
 // a visible normal and both the reflected and the refracted ray are followed as far as they escape
-// (splitting), so that energy is kept exactly and every escape can be weighted against next-event
-// estimation; one of the rays that do not escape goes on to the next collision.
+// (splitting), so that energy is kept exactly; one of the rays that do not escape goes on to the
+// next collision.
 //
 // Directions are local: z is the macroscopic normal on the side that the walk began on.
 
@@ -25,7 +25,6 @@ struct MicroBranch {
   Vec3 wi;            ///< away from the surface, in the frame of the vertex's side
   double weight = 0;  ///< Fresnel share
   double escape = 0;  ///< probability of meeting no further microfacet
-  double pdf = 0;     ///< per solid angle, of this branch at this collision
 };
 struct MicroSample {
   MicroBranch reflected, transmitted;
@@ -40,13 +39,10 @@ class MicroVertex {
   /// Share of the path's light that arrives at this collision.
   double weight() const { return weight_; }
   void set_weight(double weight) { weight_ = weight; }
-  /// Into the frame of the side that the walk began on.
+  /// A direction of this side, in the frame of the side that the walk began on.
   Vec3 to_first_side(Vec3 w) const { return crossed_ ? Vec3{w.x, w.y, -w.z} : w; }
 
   MicroSample sample(Sample2 u) const;
-  /// Light from wi (in the frame of the first side) that is scattered here and meets no further
-  /// microfacet, without weight(). Its pdf is sample()'s for the branch that leads there.
-  LobeValue evaluate(Vec3 wi) const;
   /// Moves on to the next collision of one of the two rays, chosen by what did not escape; weight()
   /// falls by that share. `u`, `v` in (0, 1].
   void advance(const MicroSample& sample, double u, double v);
@@ -67,21 +63,19 @@ class MicroVertex {
 /// microfacet (chosen by relMSE x CPU).
 inline constexpr double roulette_of_microfacets = 1.0 / 2;
 
-/// Crosses the interface from `wo`, collision by collision: `connect(vertex)` may look for light
-/// from a direction of its own, `escape(wi, weight, pdf)` receives every ray that leaves the
-/// surface on either side, wi in the frame of the first side. The expected sum of all weights is 1.
-template <class Connect, class Escape>
+/// Crosses the interface from `wo`, collision by collision: `escape(wi, weight)` receives every ray
+/// that leaves the surface on either side, wi in the frame of the first side. The expected sum of
+/// all weights is 1.
+template <class Escape>
 void cross_microsurface(const RoughInterface& interface, double eta, Vec3 wo, PathSampler& sampler,
-                        Connect&& connect, Escape&& escape,
-                        double roulette = roulette_of_microfacets) {
+                        Escape&& escape, double roulette = roulette_of_microfacets) {
   Rng& rng = sampler.rng();
   MicroVertex vertex(interface.microfacets, eta, wo, rng.uniform_positive());
   while (true) {
-    connect(vertex);
     const MicroSample sample = vertex.sample(sampler.next2());
     for (const MicroBranch* branch : {&sample.reflected, &sample.transmitted}) {
       const double weight = vertex.weight() * branch->weight * branch->escape;
-      if (weight > 0) escape(vertex.to_first_side(branch->wi), weight, branch->pdf);
+      if (weight > 0) escape(vertex.to_first_side(branch->wi), weight);
     }
     if (!interface.multiple_scattering) return;
     vertex.advance(sample, rng.uniform_positive(), rng.uniform_positive());

@@ -84,7 +84,8 @@ Environment make_environment(const EnvironmentSpec& spec, EnvironmentSide side,
   }
 }
 
-/// Of all that is developed from one tracing: a body that one of them leaves open is traced open.
+/// The least absorption that is developed from one tracing: a body that it leaves open is traced
+/// open.
 double least_absorption(const SceneSpec& spec) {
   if (spec.explorable) return 0;
   double least = spec.material.coefficients.sigma_a_peak;

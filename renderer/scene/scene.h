@@ -20,7 +20,6 @@
 #include "renderer/shape/bowl.h"
 #include "renderer/shape/mesh.h"
 #include "renderer/shape/polytope.h"
-#include "renderer/shape/slab.h"
 #include "renderer/shape/sphere.h"
 
 namespace translucube {
@@ -32,7 +31,7 @@ struct OiledPart {
   bool covers(Vec3 p) const { return dot(p, normal) >= offset; }
 };
 
-using AnyShape = std::variant<Sphere, Slab, Mesh, Polytope, Bowl>;
+using AnyShape = std::variant<Sphere, Mesh, Polytope, Bowl>;
 
 struct Scene {
   int width = 0, height = 0;
@@ -48,9 +47,6 @@ struct Scene {
   bool camera_inside = false;
   std::vector<Lane> lanes;          ///< of the film, unless it is explorable; [0] is the material's
   std::optional<BinSpread> spread;  ///< explorable: the film's lanes are bins of length
-  /// Whether light is looked for at rough exits and through smooth boundaries; without, the same
-  /// mean comes of the paths alone, with more noise.
-  bool next_event_estimation = true;
 
   int film_lanes() const {
     return spread ? spread->bins().count() : static_cast<int>(lanes.size());

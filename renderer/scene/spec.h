@@ -22,7 +22,7 @@ struct MeshObject {
   std::filesystem::path file;  ///< OBJ or PLY, in millimetres, closed
   friend bool operator==(const MeshObject&, const MeshObject&) = default;
 };
-/// The bounding boxes of these are centred at the origin.
+/// A plate. As a box and a wedge, it has its bounding box centred at the origin.
 struct PlateObject {
   double width_mm = 40, height_mm = 40, thickness_mm = 4;  ///< along x, y, z
   friend bool operator==(const PlateObject&, const PlateObject&) = default;

@@ -27,7 +27,7 @@ class Bowl {
     return std::min({0.5 * (1 - r2), (r2 - inner_ * inner_) / (1 + inner_), -p.y});
   }
 
-  bool enter(Vec3 p, Vec3 d, Hit& hit) const {
+  bool intersect_outside(Vec3 p, Vec3 d, Hit& hit) const {
     const double b = dot(p, d), nearest2 = length_squared(p - b * d);
     double t = infinity;
     Surface surface = Surface::rim;
@@ -47,7 +47,7 @@ class Bowl {
     return true;
   }
 
-  bool exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
+  bool intersect_inside(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
     const double b = dot(p, d), r2 = length_squared(p), depth2 = std::fmax(0.0, 1 - r2);
     const double root = std::sqrt(b * b + depth2);
     double t = b > 0 ? depth2 / (b + root) : root - b;  // without cancellation on either side

@@ -27,8 +27,9 @@ class DistanceGrid {
     if (samples_ == nullptr) throw std::bad_alloc();
   }
 
-  /// For p anywhere: beyond the cube the nearest cell answers. `nearest(center)` returns a distance
-  /// that is found there, of which `keen` times is known to be free.
+  /// Bounds at p, which may lie anywhere: beyond the cube the nearest cell answers.
+  /// `nearest(center)` returns a distance that is found there, of which `keen` times is known to be
+  /// free.
   template <class Nearest>
   DistanceBounds at(Vec3 p, double keen, Nearest&& nearest) const {
     const int x = index(p.x), y = index(p.y), z = index(p.z);
@@ -47,7 +48,7 @@ class DistanceGrid {
  private:
   static constexpr double rounding = 1e-6;  ///< of the samples, in single precision
 
-  /// Of the cell; a NaN has the first one.
+  /// The cell of a coordinate; a NaN has the first one.
   int index(double x) const {
     return static_cast<int>(std::fmin(std::fmax(0.0, 0.5 * (x + 1) * cells_), cells_ - 0.5));
   }

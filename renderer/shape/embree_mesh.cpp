@@ -27,8 +27,8 @@ struct SceneDeleter {
 using Device = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 using EmbreeScene = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 
-/// In units of the body: how far before its origin a ray is handed to Embree, to stay clear of its
-/// rounding, and how far behind its origin a face may lie by our own rounding.
+/// How far before its origin a ray is handed to Embree, to stay clear of its rounding, and how far
+/// behind its origin a face may lie by our own rounding, in units of the body.
 constexpr double lead_in = 1e-5, behind = 1e-9;
 
 enum class Side { any, front, back };
@@ -125,8 +125,8 @@ struct NearestQuery {
   double distance;  ///< of the nearest face so far
 };
 
-/// In units of the body: more than single precision moves a point of the unit ball or the boxes of
-/// Embree's tree, so that no face nearer than the radius is passed over.
+/// More than single precision moves a point of the unit ball or the boxes of Embree's tree, in
+/// units of the body, so that no face nearer than the radius is passed over.
 constexpr double point_margin = 2e-6;
 
 bool consider_face(RTCPointQueryFunctionArguments* args) {
@@ -153,7 +153,7 @@ DistanceBounds nearest_face(const MeshGeometry& geometry, Vec3 p, double most, d
 
 }  // namespace
 
-bool Mesh::enter(Vec3 p, Vec3 d, Hit& hit) const {
+bool Mesh::intersect_outside(Vec3 p, Vec3 d, Hit& hit) const {
   // From afar: move to the bounding sphere first, where single precision is good enough.
   const double b = dot(p, d), c = length_squared(p) - 1.02 * 1.02;
   double advanced = 0;
@@ -169,7 +169,7 @@ bool Mesh::enter(Vec3 p, Vec3 d, Hit& hit) const {
   return true;
 }
 
-bool Mesh::exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
+bool Mesh::intersect_inside(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
   return first_hit(*geometry_, p, d, t_max, Side::back, hit);
 }
 

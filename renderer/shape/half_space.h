@@ -10,7 +10,7 @@ namespace translucube {
 struct HalfSpace {
   double clearance(Vec3 p) const { return -p.z; }
 
-  bool exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
+  bool intersect_inside(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
     if (p.z + t_max * d.z < 0) return false;
     hit = {{}, {0, 0, 1}, -p.z / d.z};
     return true;

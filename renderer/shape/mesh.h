@@ -24,8 +24,8 @@ class Mesh {
   DistanceBounds finer_distance_bounds(Vec3 p) const;
   /// Closer bounds, where the distance is known to be at most `most`, at the cost of some rays.
   DistanceBounds distance(Vec3 p, double most) const;
-  bool enter(Vec3 p, Vec3 d, Hit& hit) const;
-  bool exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const;
+  bool intersect_outside(Vec3 p, Vec3 d, Hit& hit) const;
+  bool intersect_inside(Vec3 p, Vec3 d, double t_max, Hit& hit) const;
 
  private:
   std::shared_ptr<const MeshGeometry> geometry_;

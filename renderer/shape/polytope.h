@@ -31,7 +31,7 @@ class Polytope {
     return least;
   }
 
-  bool enter(Vec3 p, Vec3 d, Hit& hit) const {
+  bool intersect_outside(Vec3 p, Vec3 d, Hit& hit) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     double in = -infinity, out = infinity;
     const Plane* face = nullptr;
@@ -51,7 +51,7 @@ class Polytope {
     return true;
   }
 
-  bool exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
+  bool intersect_inside(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
     double nearest = std::numeric_limits<double>::infinity();
     const Plane* face = nullptr;
     for (const Plane& plane : planes_) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Shapes: what rays meet. A shape enters the transport through a few questions only; it knows
+// Shapes: what rays meet. The transport asks a shape a few questions only; a shape knows
 // nothing of optics, of scenes or of paths. Lengths are in the body's own unit (sphere: its radius;
 // mesh: its bounding radius), centred at the origin.
 
@@ -15,12 +15,11 @@ struct Hit {
 };
 
 // Every shape answers:
-//   enter(p, d, hit)          first hit of a ray outside, towards the surface's front
-//   exit(p, d, t_max, hit)    the hit of a ray inside if it is nearer than t_max
-//   inside(p)                 whether a point lies in the body
-//   clearance(p)              a lower bound of the distance of a point inside to the surface; for a
-//   mesh, the
-//                             walk's clearing.h keeps it
-//   convex()                  whether a ray that leaves can never come back
+//   intersect_outside(p, d, hit)        the first hit of a ray outside, on the surface's front
+//   intersect_inside(p, d, t_max, hit)  the hit of a ray inside, if it is nearer than t_max
+//   inside(p)                           whether a point lies in the body
+//   clearance(p)                        a lower bound of the distance of a point inside to the
+//                                       surface; in a mesh, clearing.h of a walk keeps it
+//   convex()                            whether a ray that leaves can never come back
 
 }  // namespace translucube

@@ -29,7 +29,7 @@ struct Sphere {
   bool inside(Vec3 p) const { return length_squared(p) < 1; }
   double clearance(Vec3 p) const { return 0.5 * (1 - length_squared(p)); }
 
-  bool enter(Vec3 p, Vec3 d, Hit& hit) const {
+  bool intersect_outside(Vec3 p, Vec3 d, Hit& hit) const {
     const double b = dot(p, d);
     const Vec3 nearest = p - b * d;
     const double half_chord2 = 1 - length_squared(nearest);
@@ -42,7 +42,7 @@ struct Sphere {
     return true;
   }
 
-  bool exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
+  bool intersect_inside(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
     if (length_squared(p + t_max * d) < 1) return false;
     const double b = dot(p, d), depth2 = std::fmax(0.0, 1 - length_squared(p));
     const double root = std::sqrt(b * b + depth2);

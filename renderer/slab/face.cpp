@@ -71,16 +71,14 @@ PathSampler sampler_of(std::uint64_t key, int what, std::uint64_t index) {
 
 Vec3 direction(double mu) { return {std::sqrt(std::fmax(0.0, 1 - mu * mu)), 0, mu}; }
 
-constexpr auto no_connection = [](const MicroVertex&) {};
-
 }  // namespace
 
 void RoughFaceSampler::sample_stream(int from, std::uint64_t first, std::uint64_t last) {
   const double ior = interface_.ior;
   for (std::uint64_t i = first; i < last; ++i) {
     PathSampler sampler = sampler_of(key_, 2 + from, i);
-    cross_microsurface(interface_, 1 / ior, direction(streams_->mu[from]), sampler, no_connection,
-                       [&](Vec3 wi, double weight, double) {
+    cross_microsurface(interface_, 1 / ior, direction(streams_->mu[from]), sampler,
+                       [&](Vec3 wi, double weight) {
                          if (wi.z > 0)
                            add_inside(sums_.reflects.col(from), wi.z, weight);
                          else
@@ -94,7 +92,7 @@ void RoughFaceSampler::sample_incidence(int incidence, std::uint64_t first, std:
     PathSampler sampler = sampler_of(key_, incidence, i);
     const double u = sampler.next2().u;
     cross_microsurface(interface_, interface_.ior, direction(incidence == 0 ? 1 : std::sqrt(1 - u)),
-                       sampler, no_connection, [&](Vec3 wi, double weight, double) {
+                       sampler, [&](Vec3 wi, double weight) {
                          if (wi.z > 0)
                            sums_.reflected[incidence] += weight;
                          else

@@ -25,7 +25,8 @@ class RoughFaceSampler {
  public:
   RoughFaceSampler(const Streams& streams, const RoughInterface& interface, std::uint64_t key);
 
-  /// Up to this many samples of each stream, and more of the incident light. Rising.
+  /// Takes samples up to this many of each stream, and more of the incident light; never fewer than
+  /// before.
   void sample_to(std::uint64_t samples);
   Face face() const;
   std::uint64_t samples_taken() const;

@@ -61,7 +61,7 @@ class Walk {
  private:
   // ---- inside
 
-  /// To the first scatterer, by whichever of the crossings; false if light meets none.
+  /// Moves to the first scatterer, by whichever of the crossings; false if light meets none.
   bool scatter_first(double mu, double u) {
     const FirstScatterer first =
         sample_first_scatterer(interface_.ior, interior_.medium.sigma_s, mu, u);
@@ -128,7 +128,7 @@ class Walk {
     }
   }
 
-  /// Mirrored at the faces, back into the slab.
+  /// Mirrors the path at the faces, back into the slab.
   void fold() {
     const double whole = std::floor(z_);
     z_ -= whole;

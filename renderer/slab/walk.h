@@ -17,7 +17,7 @@ bool needs_walks(const Body& body);
 void walk(const Body& body, Incidence incidence, std::uint64_t key, std::uint64_t first,
           std::uint64_t count, Tally& tally);
 
-/// As walk(), with every flight walked one by one: a reference for tests.
+/// Does what walk() does with every flight walked one by one: a reference for tests.
 void walk_analog(const Body& body, Incidence incidence, std::uint64_t key, std::uint64_t first,
                  std::uint64_t count, Tally& tally);
 

@@ -15,10 +15,10 @@ class Clearing {
  public:
   Clearing(const Mesh& mesh, const Medium& medium) : mesh_(mesh), medium_(medium) {}
 
-  bool exit(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
+  bool intersect_inside(Vec3 p, Vec3 d, double t_max, Hit& hit) const {
     if (in_ball(p) && in_ball(p + t_max * d)) return false;
     if (t_max < mesh_.distance_bounds(p).least) return false;
-    return mesh_.exit(p, d, t_max, hit);
+    return mesh_.intersect_inside(p, d, t_max, hit);
   }
 
   /// A lower bound of the distance to the surface, good enough to choose a large step by.

@@ -2,12 +2,15 @@
 
 namespace translucube {
 
+/// Lights that a collision with a microfacet looks for.
+inline constexpr std::uint32_t lights_of_a_collision = 8;
+
 template <class Body>
 void Tracer<Body>::await_crossing(const Path& path, bool from_outside) {
   crossing_.push_back(path);
   PathSampler& sampler = crossing_.back().sampler;
   microsurface_.push(from_outside ? path.n : -path.n, path.d, sampler.next2(), sampler.rng().bits(),
-                     Body::looks_for_light && !from_outside && path.vertex.phase > 0);
+                     Body::connects && !from_outside && path.vertex.connected());
   if (crossing_.size() == MicrosurfaceBatch::capacity) cross_rough(from_outside);
 }
 
@@ -23,14 +26,12 @@ void Tracer<Body>::cross_rough(bool from_outside) {
   std::array<Rgb, MicrosurfaceBatch::capacity> found{};
   microsurface_.start(interface);
   while (microsurface_.under_way() > 0) {
-    tile_.counters.connections += lights_each * microsurface_.under_way();
+    tile_.counters.light_samples += lights_each * microsurface_.under_way();
     microsurface_.collide(interface, lights_, lights_each);
     const MicrosurfaceBatch::Lit& lit = microsurface_.lit();
     for (std::size_t i = 0; i < lit.size; ++i) {
-      const Vec3 direction{lights_.x[lit.light[i]], lights_.y[lit.light[i]],
-                           lights_.z[lit.light[i]]};
-      Hit hit;
-      if (!shape_.convex() && shape_.enter(crossing_[lit.slot[i]].p, direction, hit)) continue;
+      const Vec3 direction = lights_.direction[lit.light[i]];
+      if (hides(crossing_[lit.slot[i]].p, direction)) continue;
       found[lit.slot[i]] += lights_.radiance[lit.light[i]] * lit.share[i];
     }
     send_out(lights_each);
@@ -40,7 +41,7 @@ void Tracer<Body>::cross_rough(bool from_outside) {
     collector_.collect(path, found[i], path.weight);
     if constexpr (Body::lets_in || Body::inside.diffuse) {
       path.weight *= microsurface_.inward_weight(i);
-      path.pdf = 0;
+      path.pdf = Path::not_looked_for;
       path.d = microsurface_.inward(i);
       if (path.weight > 0) go_on_inside(path, from_outside);
     }
@@ -63,18 +64,18 @@ void Tracer<Body>::go_on_inside(Path& path, bool from_outside) {
 template <class Body>
 void Tracer<Body>::send_out(std::uint32_t lights_each) {
   const MicrosurfaceBatch::Sent& sent = microsurface_.sent();
-  const auto direction = [&](std::size_t i) { return Vec3{sent.x[i], sent.y[i], sent.z[i]}; };
   const float* ways = nullptr;
-  if constexpr (Body::looks_for_light) {
+  if constexpr (Body::connects) {
     for (std::size_t i = 0; i < sent.size; ++i)
       if (sent.connected[i] > 0)
-        connector_.push_way(crossing_[sent.slot[i]], direction(i), sent.pdf[i]);
+        connector_.push_way(crossing_[sent.slot[i]], sent.direction[i], sent.pdf[i]);
     ways = connector_.weigh_ways().data();
   }
   for (std::size_t i = 0; i < sent.size; ++i) {
     Path& path = crossing_[sent.slot[i]];
     const double pdf = sent.connected[i] > 0 ? *ways++ : sent.pdf[i] / lights_each;
-    go_out(path, direction(i), path.weight * sent.weight[i], lights_each > 0 ? pdf : 0);
+    go_out(path, sent.direction[i], path.weight * sent.weight[i],
+           lights_each > 0 ? pdf : Path::not_looked_for);
   }
 }
 

@@ -1,4 +1,4 @@
-// Light that comes back in all directions: of the infinitely dense body, and of the paper's model.
+// Light that comes back in all directions: of the Lambertian body, and of the dipole model.
 
 namespace translucube {
 
@@ -14,10 +14,9 @@ void Tracer<Body>::return_diffuse(Path& path) {
   path.length += shortest_length;  // it was inside
   const Frame frame(path.n);
   const InterfacedLambertian& base = diffuse_base(path);
-  const auto emit = [&](Vec3 wi) { return base.emit(wi); };
-  connect(path, frame, emit);
+  add_direct_light(path, frame, base);
   const Vec3 wi = InterfacedLambertian::sample(path.sampler.next2());
-  const LobeValue value = emit(wi);
+  const LobeValue value = base.emit(wi);
   if (value.f_cos > 0)
     go_out(path, frame.to_world(wi), path.weight * value.f_cos / value.pdf, value.pdf);
 }
@@ -36,8 +35,8 @@ void Tracer<Body>::return_dipole(Path& arriving) {
                       [](const DipoleColor& color) { return color.total(); });
   } else {
     u.u = (u.u - share_here) / (1 - share_here);
-    const DipoleExit from =
-        sample_exit(shape_, interior_.radii, path.p, path.n, u, path.sampler.rng());
+    const IncidentPoint from =
+        sample_incident_point(shape_, interior_.radii, path.p, path.n, u, path.sampler.rng());
     path.weight *= from.weight / interior_.radii.mass();
     arriving.sampler = path.sampler;
     if (from.lost) collector_.give_up(path);
@@ -55,17 +54,16 @@ void Tracer<Body>::return_dipole(Path& arriving) {
 }
 
 template <class Body>
-template <class Evaluate>
-void Tracer<Body>::connect(Path& path, const Frame& frame, Evaluate&& evaluate) {
+void Tracer<Body>::add_direct_light(Path& path, const Frame& frame,
+                                    const InterfacedLambertian& base) {
   const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
   // The same from everywhere: nothing to look for.
-  if (environment == nullptr || !scene_.next_event_estimation) return;
+  if (environment == nullptr) return;
   const EnvironmentSample light = environment->sample(path.sampler.next2());
-  ++tile_.counters.connections;
-  const LobeValue value = evaluate(frame.to_local(light.direction));
+  ++tile_.counters.light_samples;
+  const LobeValue value = base.emit(frame.to_local(light.direction));
   if (value.f_cos <= 0) return;
-  Hit hit;
-  if (!shape_.convex() && shape_.enter(path.p, light.direction, hit)) return;
+  if (hides(path.p, light.direction)) return;
   collector_.note("connect", path);
   collector_.collect(path, light.value.radiance,
                      path.weight * value.f_cos / (light.value.pdf + value.pdf));

@@ -15,7 +15,7 @@ void Tracer<Body>::enter() {
 template <class Body>
 void Tracer<Body>::arrive_outside(Path path) {
   Hit hit;
-  if (!shape_.enter(path.p, path.d, hit)) return escape(path);
+  if (!shape_.intersect_outside(path.p, path.d, hit)) return escape(path);
   path.p = hit.p;
   path.n = hit.n;
   collector_.note("enter", path);
@@ -33,7 +33,8 @@ void Tracer<Body>::enter_smooth(Path path) {
   const Vec3 wo = -path.d;
   const double reflectance = fresnel(dot(wo, path.n), interface_.ior);
   if constexpr (Body::inside.dipole) return_dipole(path);
-  if (reflectance > 0) go_out(path, reflect(wo, path.n), path.weight * reflectance, 0);
+  if (reflectance > 0)
+    go_out(path, reflect(wo, path.n), path.weight * reflectance, Path::not_looked_for);
   if constexpr (Body::inside.diffuse) {
     path.weight *= 1 - reflectance;
     return_diffuse(path);
@@ -43,7 +44,7 @@ void Tracer<Body>::enter_smooth(Path path) {
     path.d = *refract(wo, path.n, interface_.ior);
     path.weight *= 1 - reflectance;
     if constexpr (Body::inside.dipole) path.weight *= interior_.clear_share;
-    path.pdf = 0;
+    path.pdf = Path::not_looked_for;
     go_in(path);
   }
 }

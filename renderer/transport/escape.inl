@@ -8,27 +8,27 @@ void Tracer<Body>::escape(const Path& path) {
   if (scene_.backdrop && path.d.z < 0) {
     meet_backdrop(path);
     // Nothing of the environment, but a connection may have taken its share of nothing.
-    if (path.pdf == 0 || std::holds_alternative<UniformEnvironment>(scene_.environment)) return;
+    if (path.pdf == Path::not_looked_for ||
+        std::holds_alternative<UniformEnvironment>(scene_.environment))
+      return;
   }
   if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
     return collector_.collect(path, uniform->radiance, path.weight);
-  if constexpr (Body::looks_for_light && Body::smooth)
+  if constexpr (Body::connects && Body::smooth)
     if (path.pdf == Path::found_by_connecting)
       return collector_.collect_carried(
           path.pixel, path.length, path.tint,
-          connector_.expected(path.n, path.walk) * static_cast<float>(path.weight));
+          connector_.expected(path.n, path.start) * static_cast<float>(path.weight));
   Escapes& escapes = escapes_[path.length > 0 ? 1 : 0];
   EnvironmentBatch& batch = escapes.batch;
   const std::size_t i = batch.size++;
-  batch.x[i] = static_cast<float>(path.d.x);
-  batch.y[i] = static_cast<float>(path.d.y);
-  batch.z[i] = static_cast<float>(path.d.z);
-  escapes.from[i] = {path.n, path.length, path.weight, path.pdf, path.walk, path.pixel, path.tint};
-  if (batch.size == EnvironmentBatch::capacity) collect(escapes);
+  batch.direction.set(i, path.d);
+  escapes.from[i] = {path.n, path.length, path.weight, path.pdf, path.start, path.pixel, path.tint};
+  if (batch.size == EnvironmentBatch::capacity) meet_environment(escapes);
 }
 
 template <class Body>
-void Tracer<Body>::collect(Escapes& escapes) {
+void Tracer<Body>::meet_environment(Escapes& escapes) {
   EnvironmentBatch& batch = escapes.batch;
   if (batch.size == 0) return;
   batch.look_up(std::get<ImageEnvironment>(scene_.environment));
@@ -36,10 +36,10 @@ void Tracer<Body>::collect(Escapes& escapes) {
     const Escape& from = escapes.from[i];
     const EnvironmentValue& light = batch.value[i];
     Rgb radiance = light.radiance;
-    if (from.pdf > 0 && scene_.next_event_estimation) {  // it was looked for as well
+    if (from.pdf != Path::not_looked_for) {
       const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
-      if constexpr (Body::looks_for_light && Body::smooth) {
-        const Rgb expected = connector_.expected(from.n, from.walk) * Connector::far_share;
+      if constexpr (Body::connects && Body::smooth) {
+        const Rgb expected = connector_.expected(from.n, from.start) * Connector::far_share;
         radiance = expected + (radiance - expected) * share;
       } else {
         radiance = radiance * share;
@@ -62,32 +62,32 @@ void Tracer<Body>::meet_backdrop(const Path& path) {
   reflected.p = p;
   reflected.n = {0, 0, 1};
   reflected.weight *= value;
-  reflected.pdf = reflected.vertex.phase = 0;
-  if (reflected.weight > 0) leave_print(reflected);
+  reflected.pdf = Path::not_looked_for;
+  reflected.vertex = {};
+  if (reflected.weight > 0) reflect_from_print(reflected);
 }
 
 template <class Body>
-void Tracer<Body>::leave_print(Path path) {
+void Tracer<Body>::reflect_from_print(Path path) {
   // Light that falls on the print straight from the environment is looked for; what comes by way of
   // the body is found by going there.
   collector_.note("print", path);
   const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
   Hit hit;
-  if (environment && scene_.next_event_estimation) {
+  if (environment) {
     const EnvironmentSample light = environment->sample(path.sampler.next2());
-    ++tile_.counters.connections;
+    ++tile_.counters.light_samples;
     const double cosine = light.direction.z;
-    if (cosine > 0 && light.value.pdf > 0 && !shape_.enter(path.p, light.direction, hit))
+    if (cosine > 0 && light.value.pdf > 0 &&
+        !shape_.intersect_outside(path.p, light.direction, hit))
       collector_.collect(path, light.value.radiance,
                          path.weight * cosine / (std::numbers::pi * light.value.pdf));
   }
   path.d = InterfacedLambertian::sample(path.sampler.next2());
-  if (shape_.enter(path.p, path.d, hit)) return go_back(path);
+  if (shape_.intersect_outside(path.p, path.d, hit)) return go_back(path);
   if (!environment)
     collector_.collect(path, std::get<UniformEnvironment>(scene_.environment).radiance,
                        path.weight);
-  else if (!scene_.next_event_estimation)
-    collector_.collect(path, environment->value_from(path.d).radiance, path.weight);
 }
 
 }  // namespace translucube

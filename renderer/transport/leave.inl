@@ -2,6 +2,10 @@
 
 namespace translucube {
 
+/// In the dipole model, times that light may come back to the body from outside before its path is
+/// given up.
+inline constexpr std::uint32_t dipole_arrival_cap = 16;
+
 template <class Body>
 void Tracer<Body>::leave() {
   if constexpr (Body::lets_in) {
@@ -29,7 +33,7 @@ void Tracer<Body>::leave_smooth(Path& path) {
   const double reflectance = fresnel(dot(path.d, path.n), 1 / interface_.ior);
   if (reflectance < 1) {
     const Vec3 out = *refract(-path.d, -path.n, 1 / interface_.ior);
-    double pdf = 0;
+    double pdf = Path::not_looked_for;
     if constexpr (Body::smooth) pdf = connector_.pdf(path);
     go_out(path, out, path.weight * (1 - reflectance), pdf);
   }

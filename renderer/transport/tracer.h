@@ -4,21 +4,32 @@
 // and the length travelled inside the body; absorption comes with the film's lanes. In stages, each
 // one loop over a queue of paths:
 //
-//   emit    camera samples                                                    tracer.h
-//   enter   rays outside: to where they hit the body, and a share goes in     enter.inl
-//   walk    flights inside, from scatterer to scatterer, to the boundary      walk.inl
-//   leave   paths inside at the boundary: a share goes out, the rest walks    leave.inl
-//   escape  what went out for good: to the environment or the backdrop        escape.inl
+//   emit    camera samples                                                  emit.inl
+//   enter   rays outside: to where they hit the body, and a share goes in   enter.inl
+//   walk    flights inside, from scatterer to scatterer, to the boundary    walk.inl
+//   leave   paths inside at the boundary: a share goes out, the rest walks  leave.inl
+//   escape  what went out for good: to the environment or the backdrop      escape.inl
 //
-// and between them, where the light
+// and between them, where light
 //
-//   crosses a rough interface, from microfacet to microfacet                  cross.inl
-//   comes back from a dense body, in all directions                           diffuse.inl
+//   crosses a rough interface, from microfacet to microfacet                cross.inl
+//   comes back in all directions: a Lambertian body, the dipole             diffuse.inl
 //
 // At a smooth boundary both branches are followed; the light that no particle deflects is
 // enumerated, not sampled, and one scattered path stands for all that is deflected on the way (a
 // reservoir of one: Chao 1982). Paths of small weight are played out by Russian roulette, so that
 // the branches in flight stay bounded.
+//
+// Light that differs between directions is found by escape, and looked for as well (next-event
+// estimation). It counts once: by the balance heuristic (Veach 1995), or because one of the two
+// ways leaves it to the other. Three estimators look for it:
+//
+//   direct light      where light goes out in all directions (Lambertian    diffuse.inl,
+//                     body, dipole, print): one light for each path         escape.inl
+//   microfacet light  at each collision with a microfacet, on either side   cross.inl
+//                     of the interface: eight lights of the tile's list
+//   connections       from scatterers in a sphere through its boundary,     walk.inl,
+//                     smooth or rough                                       sphere/*_connector.h
 //
 // What runs inside, by interior and shape:
 //
@@ -29,7 +40,7 @@
 //   Lambertian     return_diffuse()                     the same
 //   dense pigment  walk_alone() in a half space         the same
 //   scattering     walk_together(), in SIMD;            walk_alone(), in a mesh with a Clearing;
-//                  vertices look for light by           no light is looked for inside
+//                  vertices connect to lights by        nothing connects
 //                  SmoothConnector or RoughConnector
 
 #include <algorithm>
@@ -44,7 +55,7 @@
 #include "renderer/optics/lambertian.h"
 #include "renderer/optics/microsurface_batch.h"
 #include "renderer/transport/collector.h"
-#include "renderer/transport/dipole_exit.h"
+#include "renderer/transport/incident_point.h"
 #include "renderer/transport/path.h"
 #include "renderer/transport/sphere/rough_connector.h"
 #include "renderer/transport/sphere/smooth_connector.h"
@@ -53,23 +64,10 @@
 
 namespace translucube {
 
-/// Below this weight a path survives with probability weight / threshold: low where following it is
-/// cheap, high where each turn is a long walk (chosen by relMSE x CPU on the peers' materials).
-inline constexpr double roulette_of_clear = 1.0 / 64;
-/// The threshold of a scattered path, relative to its weight at the first scattering.
-inline constexpr double roulette_of_scattered = 1.0 / 4;
-/// The threshold inside a clear body under a rough interface, relative to the weight that went in.
-inline constexpr double roulette_of_rough = 1.0 / 8;
-/// Lights that a collision with a microfacet looks for.
-inline constexpr std::uint32_t lights_of_a_collision = 8;
-/// Below this scattering coefficient [1 / unit] a walk is so short that a camera sample starts two.
-inline constexpr double short_walk_sigma_s = 2;
 /// Boundary events after which a path is given up and its weight counted as truncated energy: only
 /// light that is trapped gets there, for good (a camera inside a clear body) or, in a mesh, for
 /// nearly as long (a medium of millions of bounding radii to the mean free path).
 inline constexpr std::uint32_t clear_event_cap = 20'000, scattering_event_cap = 2'000'000;
-/// In the dipole model, times that light may come back to the body from outside, likewise.
-inline constexpr std::uint32_t dipole_arrival_cap = 16;
 
 /// One alternative of each part of a scene's body, and what follows from the three.
 template <class ShapeType, class InterfaceType, class InteriorType>
@@ -89,9 +87,9 @@ struct Body {
   static constexpr bool walks_together = inside.scatters && std::is_same_v<Shape, Sphere>;
   /// Trapped light rolls from reflection to reflection in one step.
   static constexpr bool rolls = inside.scatters && std::is_same_v<Shape, Sphere>;
-  /// Scattering vertices look for light through the boundary: those that walks together report.
-  static constexpr bool looks_for_light = walks_together;
-  using Connector = std::conditional_t<!looks_for_light, NoConnector,
+  /// Scattering vertices connect to lights through the boundary: those that walks together report.
+  static constexpr bool connects = walks_together;
+  using Connector = std::conditional_t<!connects, NoConnector,
                                        std::conditional_t<smooth, SmoothConnector, RoughConnector>>;
 };
 
@@ -125,71 +123,53 @@ class Tracer {
       leave();
     }
     connector_.flush();
-    for (Escapes& escapes : escapes_) collect(escapes);
+    for (Escapes& escapes : escapes_) meet_environment(escapes);
     collector_.flush();
   }
 
  private:
   static LightList lights_of(const Scene& scene, std::uint64_t key) {
-    return Body::smooth || !scene.next_event_estimation ? LightList()
-                                                        : LightList(scene.environment, key);
+    return Body::smooth ? LightList() : LightList(scene.environment, key);
   }
 
   Connector make_connector(const Scene& scene, std::uint64_t key) {
-    // Vertices look for light through one interface: where there are two, the walk finds it.
+    // Vertices connect through one interface: where there are two, the walk finds the light.
     static const LightList none;
-    if constexpr (Body::looks_for_light && !Body::smooth)
+    if constexpr (Body::connects && !Body::smooth)
       return Connector(scene, collector_, scene.oiled ? none : lights_);
     else
       return Connector(scene, collector_, key);
   }
 
-  void emit(std::uint32_t pass_index, std::uint32_t sample) {
-    for (int y = 0; y < tile_.height; ++y)
-      for (int x = 0; x < tile_.width; ++x) {
-        const int px = tile_.x0 + x, py = tile_.y0 + y;
-        const std::uint64_t pixel_key =
-            hash_combine(hash_combine(scene_.seed, pass_index),
-                         std::uint64_t(py) * std::uint64_t(scene_.width) + std::uint64_t(px));
-        Path path;
-        path.sampler = PathSampler(pixel_key, sample);
-        path.pixel = static_cast<std::uint32_t>(y * tile_.width + x);
-        path.roulette = roulette_of_clear;
-        const Sample2 u = path.sampler.next2();
-        path.p = scene_.camera.position;
-        path.d = scene_.camera.direction(px + u.u, py + u.v);
-        collector_.note("emit", path);
-        ++tile_.counters.camera_samples;
-        if (!scene_.camera_inside) {
-          entering_.push_back(path);
-        } else if constexpr (Body::inside.open) {
-          go_in(path);
-        }
-      }
-  }
+  // ---- emit.inl
+
+  void emit(std::uint32_t pass_index, std::uint32_t sample);
 
   // ---- enter.inl
 
   void enter();
   void arrive_outside(Path path);
+  /// Follows the reflected and the refracted branch.
   void enter_smooth(Path path);
+  /// Starts a path inside, d its direction there.
   void go_in(Path& path);
 
   // ---- walk.inl
 
   void walk();
   void walk_together();
-  /// Takes over where walks of many have come to the boundary.
+  /// Takes over the walks that have come to the boundary together.
   void arrive(const SphereWalk::Arrivals& arrivals, std::span<const Path> paths);
-  /// To the boundary; false for a path that lost its way.
+  /// Finds where a path comes to the boundary; false if it lost its way.
   bool walk_alone(Path& path, Hit& hit);
   template <class Place>
   bool walk_to_boundary(const Place& place, const Medium& medium, Particle& particle, Rng& rng,
                         Hit& hit);
-  /// The light that crosses the body unscattered, all of it; what is scattered on the way goes to
-  /// walk() as one path.
+  /// Follows all the light that crosses the body unscattered, up to its end; what is scattered on
+  /// the way goes to walk() as one path.
   void follow_unscattered(Path path);
   void start_walks(const Path& scattered, double weight, PathSampler& sampler);
+  /// Gives a path at a collision its new direction, or leaves that to the walk.
   void collide(Path& path);
   void arrive_inside(Path& path, const Hit& hit);
 
@@ -200,56 +180,62 @@ class Tracer {
   void leave_smooth(Path& path);
   /// Whether all light is reflected here, and again at every other place until it is scattered.
   bool traps(const Path& path) const;
-  /// From total reflection to the next collision, over all reflections between.
+  /// Moves a path from total reflection to its next collision, over all reflections between.
   void roll(Path& path);
+  /// Starts a path outside: it escapes or, where the body may be hit again, goes back.
   void go_out(Path& from, Vec3 direction, double weight, double pdf);
+  /// Has a path enter once more.
   void go_back(Path& path);
 
   // ---- cross.inl
 
-  /// Has the path wait at the interface, for others to cross with it.
+  /// Has a path wait at the interface, for others to cross with it.
   void await_crossing(const Path& path, bool from_outside);
-  /// All that wait, from microfacet to microfacet: what escapes outwards is sent out, and one of
-  /// the rays that escape into the body stands for all of them.
+  /// Takes all that wait from microfacet to microfacet: what escapes outwards is sent out, and one
+  /// of the rays that escape into the body stands for all of them.
   void cross_rough(bool from_outside);
-  void go_on_inside(Path& path, bool from_outside);
-  /// What left at the collisions just made.
+  /// Sends out what left at the collisions just made.
   void send_out(std::uint32_t lights_each);
+  void go_on_inside(Path& path, bool from_outside);
 
   // ---- diffuse.inl
 
   /// The body right below the interface at path.p.
   const InterfacedLambertian& diffuse_base(const Path& path) const;
-  /// What the background below path.p sends back through the interface, all that came in.
+  /// Sends out what the background below path.p sends back through the interface, all that came in.
   void return_diffuse(Path& path);
-  /// What the body sends out at a point, of light that went in there or elsewhere: one sample for
-  /// plastic's diffuse half and the dipole together (dipole.h).
+  /// Sends out what the body does at a point, of light that went in there or elsewhere: one sample
+  /// for plastic's diffuse half and the dipole together (dipole.h).
   void return_dipole(Path& arriving);
-  /// Next-event estimation where light leaves in all directions: a direction of the environment,
-  /// weighted by the balance heuristic (Veach 1995) against those that the body samples itself.
-  template <class Evaluate>
-  void connect(Path& path, const Frame& frame, Evaluate&& evaluate);
+  /// Looks for a light of the environment, weighted by the balance heuristic against the directions
+  /// that the body samples itself.
+  void add_direct_light(Path& path, const Frame& frame, const InterfacedLambertian& base);
 
   // ---- escape.inl
 
   struct Escape {
     Vec3 n;
     double length, weight, pdf;
-    std::uint32_t walk, pixel, tint;
+    std::uint32_t start, pixel, tint;
   };
   struct Escapes {
     EnvironmentBatch batch;
     std::array<Escape, EnvironmentBatch::capacity> from;
   };
-  /// To the environment, where many look together.
   void escape(const Path& path);
-  void collect(Escapes& escapes);
+  void meet_environment(Escapes& escapes);
   /// Collects the backdrop's light, or sends the path back.
   void meet_backdrop(const Path& path);
-  /// From a print, in all directions.
-  void leave_print(Path path);
+  /// Sends a path back from a print, in any direction.
+  void reflect_from_print(Path path);
 
   // ---- at any boundary
+
+  /// Whether the body itself hides what lies along d from a point of its surface.
+  bool hides(Vec3 p, Vec3 d) const {
+    Hit hit;
+    return !shape_.convex() && shape_.intersect_outside(p, d, hit);
+  }
 
   bool is_smooth_at(const Path& path) const {
     return Body::smooth || (scene_.oiled && scene_.oiled->covers(path.p));
@@ -269,12 +255,12 @@ class Tracer {
   const typename Body::Interior& interior_;
   Tile& tile_;
   Collector collector_;
-  LightList lights_;    ///< of the rough interface
+  LightList lights_;    ///< for microfacets
   bool may_come_back_;  ///< whether what leaves may arrive again
   Connector connector_;
   std::conditional_t<Body::walks_together, SphereWalk, std::monostate> sphere_walk_;
-  /// What was never inside waits apart from the rest: sums of floats depend on their order, and a
-  /// black body traced alone must have the bits of a black lane.
+  /// Paths that were never inside wait apart from the rest: sums of floats depend on their order,
+  /// and a black body traced alone must have the bits of a black lane.
   std::array<Escapes, 2> escapes_;
   std::vector<Path>&entering_, &walking_, &leaving_;
   std::vector<Path>& crossing_;  ///< at the rough interface
@@ -302,6 +288,7 @@ void trace_body(const Shape& shape, const Scene& scene, const SampleRange& sampl
 
 #include "renderer/transport/cross.inl"
 #include "renderer/transport/diffuse.inl"
+#include "renderer/transport/emit.inl"
 #include "renderer/transport/enter.inl"
 #include "renderer/transport/escape.inl"
 #include "renderer/transport/leave.inl"

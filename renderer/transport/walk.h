@@ -21,7 +21,7 @@ struct Particle {
 template <class Shape>
 bool fly(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng, Hit& hit) {
   const double flight = medium.sample_flight(rng);
-  if (shape.exit(particle.p, particle.d, flight, hit)) return false;
+  if (shape.intersect_inside(particle.p, particle.d, flight, hit)) return false;
   particle.p = particle.p + flight * particle.d;
   particle.length += flight;
   return true;

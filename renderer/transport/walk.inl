@@ -2,6 +2,9 @@
 
 namespace translucube {
 
+/// Below this scattering coefficient [1 / unit] a walk is so short that a camera sample starts two.
+inline constexpr double short_walk_sigma_s = 2;
+
 template <class Body>
 void Tracer<Body>::walk() {
   if constexpr (Body::walks_together) {
@@ -28,7 +31,7 @@ void Tracer<Body>::walk_together() {
                                 std::min(SphereWalk::capacity, walking_.size() - first));
     for (std::size_t i = 0; i < paths.size(); ++i) {
       Path& path = paths[i];
-      const double depth2 = path.p == path.n ? 0 : std::fmax(0.0, 1 - length_squared(path.p));
+      const double depth2 = path.on_unit_sphere() ? 0 : std::fmax(0.0, 1 - length_squared(path.p));
       sphere_walk_.push(static_cast<std::uint32_t>(i), path.p, depth2, path.d, path.colliding,
                         path.sampler.rng().bits());
     }
@@ -45,12 +48,10 @@ template <class Body>
 void Tracer<Body>::arrive(const SphereWalk::Arrivals& arrivals, std::span<const Path> paths) {
   for (std::size_t i = 0; i < arrivals.size; ++i) {
     Path& path = leaving_.emplace_back(paths[arrivals.slot[i]]);
-    path.p = path.n = {arrivals.n_x[i], arrivals.n_y[i], arrivals.n_z[i]};
-    path.d = {arrivals.d_x[i], arrivals.d_y[i], arrivals.d_z[i]};
+    path.p = path.n = arrivals.n[i];
+    path.d = arrivals.d[i];
     path.length += arrivals.length[i];
-    path.vertex = {{arrivals.from_x[i], arrivals.from_y[i], arrivals.from_z[i]},
-                   arrivals.from_depth2[i],
-                   arrivals.flight[i],
+    path.vertex = {arrivals.from[i], arrivals.from_depth2[i], arrivals.flight[i],
                    arrivals.phase[i]};
     path.colliding = false;
     collector_.note("boundary", path);
@@ -73,7 +74,7 @@ bool Tracer<Body>::walk_alone(Path& path, Hit& hit) {
     hit.n = path.n;
     return true;
   } else {
-    return shape_.exit(path.p, path.d, infinity, hit);
+    return shape_.intersect_inside(path.p, path.d, infinity, hit);
   }
 }
 
@@ -98,7 +99,7 @@ void Tracer<Body>::follow_unscattered(Path path) {
   Rng& rng = path.sampler.rng();
   while (true) {
     Hit hit;
-    if (!shape_.exit(path.p, path.d, infinity, hit)) {
+    if (!shape_.intersect_inside(path.p, path.d, infinity, hit)) {
       collector_.give_up(path);
       break;
     }

@@ -29,7 +29,7 @@ auto answer_after(CallContext& context, int seconds, bool& waited, Get get, Done
   const Places::Place place = context.waiting.take();
   if (!place) return result;
   waited = true;
-  context.service.watch(std::chrono::seconds(seconds), [&] {
+  context.service.changes().watch(std::chrono::seconds(seconds), [&] {
     result = get();
     return !result || done(*result);
   });

@@ -47,7 +47,7 @@ struct Stream {
     std::string text;
     if (!begun) text = reconnection_time;
     begun = true;
-    service.watch(longest_block, [&] {
+    service.changes().watch(longest_block, [&] {
       const auto found = events_after(last);
       if (!found) return ended = true;  // removed
       for (const Event& event : found->events) {
@@ -61,7 +61,7 @@ struct Stream {
       ended = found->ended && found->events.empty();
       return ended || !text.empty();
     });
-    if (service.stopping()) ended = true;
+    if (service.changes().ended()) ended = true;
     if (ended && text.empty()) return std::nullopt;
     if (text.empty() && steady_clock::now() - said >= heartbeat) text = ": still here\n\n";
     if (!text.empty()) said = steady_clock::now();

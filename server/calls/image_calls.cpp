@@ -7,9 +7,10 @@ using api::Problem;
 using api::ProblemCode;
 using api::Result;
 
-constexpr const char* what_there_is =
-    "An image can be had as image/png, image/x-exr, image/tiff or image/jpeg "
-    "(?format=png, exr, tiff, jpeg).";
+std::string what_there_is() {
+  return "An image can be had as " + list_formats(&ImageFormatRow::mime_type, " or ") +
+         " (?format=" + list_formats(&ImageFormatRow::name, ", ") + ").";
+}
 
 HttpResponse with_headers_of(const ImageFile& image, HttpResponse response) {
   response.headers.insert(response.headers.end(), {{"ETag", image.etag},
@@ -47,12 +48,7 @@ HttpResponse body_response(const HttpRequest& request, const ImageFile& image) {
 /// The format that the query names, else the best of those that the client accepts.
 std::optional<ImageFormat> wanted_format(const HttpRequest& request) {
   const auto named = request.parameter("format");
-  if (!named) return negotiate_image(request.header("accept"));
-  // Names only: image_format also takes file extensions.
-  for (const ImageFormat known :
-       {ImageFormat::png, ImageFormat::exr, ImageFormat::tiff, ImageFormat::jpeg})
-    if (*named == name(known)) return known;
-  return std::nullopt;
+  return named ? format_named(*named) : negotiate_image(request.header("accept"));
 }
 
 /// The query of an image, with what the headers ask for.
@@ -71,7 +67,7 @@ Result<ImageQuery> image_query(const HttpRequest& request) {
       return bad_parameter("absorption", "must be a number in [0, 1]");
   }
   const auto format = wanted_format(request);
-  if (!format) return Problem{ProblemCode::not_acceptable, what_there_is, {}};
+  if (!format) return Problem{ProblemCode::not_acceptable, what_there_is(), {}};
   query.format = *format;
   return query;
 }

@@ -71,7 +71,7 @@ Verb add_develop(CLI::App& app) {
   verb->add_option("--absorber", options->absorber, "A name of config/absorbers");
   add_pictures(*verb, options->outputs, "A picture, as for render")->required();
   add_setting(*verb, options->setting);
-  add_display(*verb, options->display, "PNG, TIFF and JPEG");
+  add_display(*verb, options->display, list_display_formats(&ImageFormatRow::title, " and "));
   return {verb,
           [options] { return ended_command("film", [&] { return develop_or_throw(*options); }); }};
 }

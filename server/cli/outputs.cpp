@@ -20,14 +20,14 @@ std::vector<Output> checked_outputs(const std::vector<fs::path>& files,
   std::vector<Output> outputs;
   bool for_display = false;
   for (const fs::path& file : files) {
-    const std::string extension = file.extension().string();
-    const auto format = image_format(extension.empty() ? "" : extension.substr(1));
+    const auto format = format_of(file);
     if (!format)
-      throw Refusal{exit_bad_request, file.string() + ": must end in .exr, .png, .tiff or .jpeg\n"};
+      throw Refusal{exit_bad_request, file.string() + ": must end in " +
+                                          list_formats(&ImageFormatRow::extension, " or ") + '\n'};
     check_output_place(file);
     ImageQuery query{*format, {}, {}, {}};
-    if (*format != ImageFormat::exr) {
-      prepare_image_codecs();
+    if (row_of(*format).library == ImageLibrary::open_image_io) prepare_image_codecs();
+    if (!is_scene_linear(*format)) {
       for_display = true;
       query.display = display.display;
       query.view = display.view;
@@ -42,7 +42,9 @@ std::vector<Output> checked_outputs(const std::vector<fs::path>& files,
     outputs.push_back({file, *form});
   }
   if ((display.display || display.view) && !for_display)
-    throw Refusal{exit_bad_request, "--display and --view are for PNG, TIFF and JPEG outputs\n"};
+    throw Refusal{exit_bad_request, "--display and --view are for " +
+                                        list_display_formats(&ImageFormatRow::title, " and ") +
+                                        " outputs\n"};
   return outputs;
 }
 

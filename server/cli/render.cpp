@@ -157,12 +157,13 @@ Verb add_render(CLI::App& app) {
   verb->add_option("request", options->request, "The request, JSON; - reads standard input")
       ->required();
   add_pictures(*verb, options->outputs,
-               "A picture: .exr, .png, .tiff or .jpeg; may be given several times");
+               "A picture: " + list_formats(&ImageFormatRow::extension, " or ") +
+                   "; may be given several times");
   verb->add_option("--stats", options->stats, "Writes samples, seconds, error, ... as JSON");
   verb->add_option("--explorable-out", options->explorable_out,
                    "Writes the path lengths of an explorable request, for develop");
   add_setting(*verb, options->setting);
-  add_display(*verb, options->display, "PNG, TIFF and JPEG");
+  add_display(*verb, options->display, list_display_formats(&ImageFormatRow::title, " and "));
   CLI::Option* pixel = verb->add_option(
       "--pixel", options->pixel, "x,y: explains one sample of this pixel and renders nothing");
   verb->add_option("--sample", options->sample, "Which sample of the pixel")->needs(pixel);

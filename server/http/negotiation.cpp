@@ -54,28 +54,25 @@ int specificity(const std::string& range, std::string_view mime) {
   return range == "*/*" || range == "*" ? 1 : 0;
 }
 
-constexpr std::array formats{ImageFormat::png, ImageFormat::exr, ImageFormat::tiff,
-                             ImageFormat::jpeg};
-
 }  // namespace
 
 std::optional<ImageFormat> negotiate_image(std::string_view accept) {
-  if (trimmed(accept).empty()) return formats[0];
-  std::array<double, formats.size()> quality{};
-  std::array<int, formats.size()> matched{};
+  if (trimmed(accept).empty()) return image_formats[0].format;
+  std::array<double, image_formats.size()> quality{};
+  std::array<int, image_formats.size()> matched{};
   for (const std::string_view item : split(accept, ',')) {
     const std::vector<std::string_view> parts = split(item, ';');
     const std::string range = lower_case(parts[0]);
-    for (std::size_t i = 0; i < formats.size(); ++i) {
-      const int match = specificity(range, mime_type(formats[i]));
+    for (std::size_t i = 0; i < image_formats.size(); ++i) {
+      const int match = specificity(range, image_formats[i].mime_type);
       if (match == 0 || match < matched[i]) continue;
       matched[i] = match;
       quality[i] = quality_of(parts);
     }
   }
-  const auto best = std::ranges::max_element(quality) - quality.begin();
-  if (!(quality[static_cast<std::size_t>(best)] > 0)) return std::nullopt;
-  return formats[static_cast<std::size_t>(best)];
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(quality) - quality.begin());
+  if (!(quality[best] > 0)) return std::nullopt;
+  return image_formats[best].format;
 }
 
 bool is_json(std::string_view content_type) {

@@ -8,12 +8,12 @@
 #include <string_view>
 #include <variant>
 
-#include "picture/image_io.h"
+#include "picture/image_format.h"
 
 namespace translucube::server {
 
 /// The format with the highest quality value in an Accept header (RFC 9110, 12.5.1); of equals, the
-/// first of PNG, EXR, TIFF, JPEG. An empty header accepts anything. Empty: none is acceptable.
+/// first of image_formats. An empty header accepts anything. Empty: none is acceptable.
 std::optional<ImageFormat> negotiate_image(std::string_view accept);
 
 /// True for application/json, with or without parameters.

@@ -18,7 +18,24 @@ ImageFile unkept(const Darkroom& darkroom, Image image, const ImageForm& form,
           '"' + content_hash(identity + '\n' + request + '\n' + form_name(form)) + '"'};
 }
 
+/// Through the absorber asked for, or the film's own.
+Image developed(const Film& film, const ExplorableBasis& basis,
+                const std::optional<api::Redeveloped>& redeveloped) {
+  if (!redeveloped) return develop_shares(basis, film);
+  const Absorption& absorption = redeveloped->absorption;
+  return develop_shares(basis, film, absorption.absorber, absorption.sigma_a_peak);
+}
+
 }  // namespace
+
+Result<std::optional<api::Redeveloped>> redevelopment_of(const std::string& request,
+                                                         const ImageQuery& query,
+                                                         const api::Catalog& catalog) {
+  if (!query.redevelopment.asked()) return std::optional<api::Redeveloped>();
+  auto made = api::redevelop(request, query.redevelopment, catalog);
+  if (!made) return made.problem();
+  return std::optional(*std::move(made));
+}
 
 ImageFile redeveloped_image(Darkroom& darkroom, const StoredResult& result,
                             const api::Redeveloped& redeveloped, const ImageForm& form) {
@@ -39,12 +56,8 @@ std::optional<Result<ImageFile>> partial_image(Darkroom& darkroom, LiveFilm& liv
                                                const ImageQuery& query) {
   const auto checked = image_form(query, darkroom.colors.displays());
   if (!checked) return checked.problem();
-  std::optional<api::Redeveloped> redeveloped;
-  if (query.redevelopment.asked()) {
-    auto made = api::redevelop(request, query.redevelopment, darkroom.catalog);
-    if (!made) return made.problem();
-    redeveloped = *std::move(made);
-  }
+  const auto redeveloped = redevelopment_of(request, query, darkroom.catalog);
+  if (!redeveloped) return redeveloped.problem();
   Image image;
   std::uint32_t samples = 0;
   {
@@ -52,16 +65,10 @@ std::optional<Result<ImageFile>> partial_image(Darkroom& darkroom, LiveFilm& liv
     const Film& film = live.film;
     samples = film.samples;
     if (samples == 0 || film.counters.nan_samples > 0) return std::nullopt;
-    if (!film.shares)
-      image = develop(film, 0);
-    else if (redeveloped)
-      image = develop_shares(*live.scene, film, redeveloped->absorption.absorber,
-                             redeveloped->absorption.sigma_a_peak);
-    else
-      image = develop_shares(*live.scene, film);
+    image = live.explorable ? developed(film, *live.explorable, *redeveloped) : develop(film, 0);
   }
   const std::string so_far =
-      api::with_samples(redeveloped ? redeveloped->request : request, samples);
+      api::with_samples(*redeveloped ? (*redeveloped)->request : request, samples);
   return unkept(darkroom, std::move(image), *checked, so_far, "live " + id);
 }
 

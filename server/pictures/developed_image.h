@@ -12,6 +12,11 @@
 
 namespace translucube::server {
 
+/// Through what absorber the query wants a picture of this request; empty where through its own.
+api::Result<std::optional<api::Redeveloped>> redevelopment_of(const std::string& request,
+                                                              const ImageQuery& query,
+                                                              const api::Catalog& catalog);
+
 /// A finished explorable render through another absorber; `image`: the name of its picture, whose
 /// film lies beside it. Throws ImageError where that cannot be read, ColorError, FileError.
 ImageFile redeveloped_image(Darkroom& darkroom, const StoredResult& result,

@@ -41,16 +41,17 @@ std::string list_of(const auto& items, const auto& name_of) {
 }  // namespace
 
 std::string form_name(const ImageForm& form) {
-  const std::string format(name(form.format));
-  if (form.format == ImageFormat::exr) return escaped(form.colorspace) + ".exr";
-  return escaped(form.display) + '-' + escaped(form.view) + '.' + format;
+  const std::string look = is_scene_linear(form.format)
+                               ? escaped(form.colorspace)
+                               : escaped(form.display) + '-' + escaped(form.view);
+  return look + std::string(row_of(form.format).extension);
 }
 
 Result<ImageForm> image_form(const ImageQuery& query, const std::vector<Display>& displays) {
   Problem problem{ProblemCode::invalid_request, "A query parameter is not valid.", {}};
   ImageForm form;
   form.format = query.format;
-  if (query.format == ImageFormat::exr) {
+  if (is_scene_linear(query.format)) {
     form.colorspace = query.colorspace.value_or(std::string(colorspaces[0]));
     if (std::ranges::find(colorspaces, form.colorspace) == colorspaces.end())
       problem.faults.push_back(
@@ -80,13 +81,24 @@ Result<ImageForm> image_form(const ImageQuery& query, const std::vector<Display>
 void write_form(const std::filesystem::path& file, Image image, const ImageForm& form,
                 const ColorConfig& colors, const std::string& canonical_request) {
   ImageMetadata metadata{canonical_request, form.colorspace};
-  if (form.format == ImageFormat::exr) {
+  if (is_scene_linear(form.format)) {
     if (form.colorspace != colorspaces[0]) colors.apply_colorspace(image, form.colorspace);
   } else {
     colors.apply_display(image, form.display, form.view);
     metadata.colorspace = form.display + '/' + form.view;
   }
   write_image(file, image, form.format, metadata);
+}
+
+void write_picture(ArtifactStore& artifacts, const std::string& folder, const std::string& name,
+                   const std::function<void(const std::filesystem::path&)>& writer) {
+  artifacts.write(folder, name, [&](const std::filesystem::path& temporary) {
+    try {
+      writer(temporary);
+    } catch (const ImageError& error) {
+      throw FileError(error.what());
+    }
+  });
 }
 
 void remove_files(ArtifactStore& artifacts, const StoredResult& result) {
@@ -125,12 +137,8 @@ Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
   const auto checked = image_form(query, colors.displays());
   if (!checked) return checked.problem();
   const auto& form = *checked;
-  std::optional<api::Redeveloped> redeveloped;
-  if (query.redevelopment.asked()) {
-    auto made = api::redevelop(request, query.redevelopment, catalog);
-    if (!made) return made.problem();
-    redeveloped = *std::move(made);
-  }
+  const auto redeveloped = redevelopment_of(request, query, catalog);
+  if (!redeveloped) return redeveloped.problem();
   const Problem gone{ProblemCode::gone,
                      "The picture was removed to make room; the same request makes it again.",
                      {}};
@@ -138,8 +146,8 @@ Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
   if (!result) return gone;
   store.touch_result(content);
   const std::string& original = result->image;
-  if (redeveloped) try {
-      return redeveloped_image(darkroom, *result, *redeveloped, form);
+  if (*redeveloped) try {
+      return redeveloped_image(darkroom, *result, **redeveloped, form);
     } catch (const ImageError& error) {
       spdlog::error("result {}: {}", content, error.what());
       forget(darkroom, *result);
@@ -153,12 +161,8 @@ Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
     file = artifacts.open(content, artifact);  // another request may have made it meanwhile
     if (!file) try {
         Image image = read_image(artifacts.path(content, original));
-        artifacts.write(content, artifact, [&](const std::filesystem::path& temporary) {
-          try {
-            write_form(temporary, std::move(image), form, colors, request);
-          } catch (const ImageError& error) {
-            throw FileError(error.what());
-          }
+        write_picture(artifacts, content, artifact, [&](const std::filesystem::path& temporary) {
+          write_form(temporary, std::move(image), form, colors, request);
         });
         store.resize_result(content, artifacts.bytes(content));
         file = artifacts.open(content, artifact);

@@ -18,8 +18,8 @@
 
 namespace translucube::server {
 
-/// Which form of a render's image. EXR is scene-linear in a colorspace; the others are made for a
-/// display and a view.
+/// Which form of a render's image: scene-linear formats are in a colorspace, the others are made
+/// for a display and a view.
 struct ImageQuery {
   ImageFormat format = ImageFormat::png;
   std::optional<std::string> display, view, colorspace;
@@ -45,6 +45,11 @@ api::Result<ImageForm> image_form(const ImageQuery& query, const std::vector<Dis
 /// Brings scene-linear Rec.709 into the form and writes it. Throws ImageError, ColorError.
 void write_form(const std::filesystem::path& file, Image image, const ImageForm& form,
                 const ColorConfig& colors, const std::string& canonical_request);
+
+/// Writes an artifact by an image writer, whose ImageError the disk is to blame for. Throws
+/// FileError.
+void write_picture(ArtifactStore& artifacts, const std::string& folder, const std::string& name,
+                   const std::function<void(const std::filesystem::path&)>& writer);
 
 struct ImageFile {
   std::shared_ptr<const OpenFile> file;

@@ -2,10 +2,10 @@
 
 namespace translucube::server {
 
-std::shared_ptr<LiveFilm> LiveFilms::add(const std::string& id, std::shared_ptr<const Scene> scene,
-                                         Film film) {
+std::shared_ptr<LiveFilm> LiveFilms::add(const std::string& id,
+                                         std::optional<ExplorableBasis> explorable, Film film) {
   auto live = std::make_shared<LiveFilm>();
-  live->scene = std::move(scene);
+  live->explorable = std::move(explorable);
   live->film = std::move(film);
   {
     const std::lock_guard lock(mutex_);
@@ -19,7 +19,6 @@ std::shared_ptr<LiveFilm> LiveFilms::add(const std::string& id, std::shared_ptr<
 void LiveFilms::merge(LiveFilm& live, const PassFilm& pass) {
   {
     const std::lock_guard lock(live.mutex);
-    if (live.film.passes == 0) live.film = Film(pass.width, pass.height, pass.lanes, pass.shares);
     translucube::merge(live.film, pass);
   }
   on_change_();

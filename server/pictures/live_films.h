@@ -7,8 +7,10 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
+#include "renderer/film/explorable_develop.h"
 #include "renderer/film/film.h"
 #include "renderer/render.h"
 
@@ -18,7 +20,7 @@ namespace translucube::server {
 /// else looks at it holds the lock too.
 struct LiveFilm {
   std::mutex mutex;
-  std::shared_ptr<const Scene> scene;
+  std::optional<ExplorableBasis> explorable;  ///< of a film that keeps the path lengths
   Film film;
 };
 
@@ -29,7 +31,7 @@ class LiveFilms {
   explicit LiveFilms(std::function<void()> on_change = [] {}) : on_change_(std::move(on_change)) {}
 
   /// Seen as long as it lives, or until the next of this job.
-  std::shared_ptr<LiveFilm> add(const std::string& id, std::shared_ptr<const Scene> scene,
+  std::shared_ptr<LiveFilm> add(const std::string& id, std::optional<ExplorableBasis> explorable,
                                 Film film);
   void merge(LiveFilm& live, const PassFilm& pass);
 

@@ -70,12 +70,8 @@ Result<ImageFile> sheet_artifact(Darkroom& darkroom, const api::SweepStatus& swe
       compose(darkroom, sweep, sheet);
       for (const std::string& old : artifacts.names(sweep.id))
         if (old.ends_with('-' + form_name(form))) artifacts.remove(sweep.id, old);
-      artifacts.write(sweep.id, artifact, [&](const std::filesystem::path& temporary) {
-        try {
-          sheet.write(temporary, api::canonical_json(sweep.sweep));
-        } catch (const ImageError& error) {
-          throw FileError(error.what());
-        }
+      write_picture(artifacts, sweep.id, artifact, [&](const std::filesystem::path& temporary) {
+        sheet.write(temporary, api::canonical_json(sweep.sweep));
       });
       file = artifacts.open(sweep.id, artifact);
     } catch (const SheetError&) {

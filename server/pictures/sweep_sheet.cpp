@@ -19,8 +19,8 @@ SheetSpec spec_of(const api::Sweep& sweep, std::int64_t max_pixels) {
 }
 
 SheetLook look_of(const ImageForm& form, const ColorConfig& colors) {
-  return form.format == ImageFormat::exr ? scene_linear_look()
-                                         : display_look(colors, form.display, form.view);
+  return is_scene_linear(form.format) ? scene_linear_look()
+                                      : display_look(colors, form.display, form.view);
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ void SweepSheet::mark(std::size_t point, std::string_view state) {
 
 void SweepSheet::write(const std::filesystem::path& file,
                        const std::string& canonical_sweep) const {
-  if (form_.format != ImageFormat::exr) {
+  if (!is_scene_linear(form_.format)) {
     write_image(file, sheet_.image(), form_.format,
                 {canonical_sweep, form_.display + '/' + form_.view});
     return;

@@ -1,159 +1,57 @@
+// The life of the service itself: its start, its end, and whether it is ready.
+
 #include "server/service/job_service.h"
 
-#include "api/answer/material_report.h"
-#include "api/request/canonical.h"
-#include "api/request/parse.h"
-#include "server/pictures/developed_image.h"
-#include "server/service/job_service_parts.h"
-#include "server/store/content.h"
-
 namespace translucube::server {
-namespace {
 
-using api::Problem;
-using api::ProblemCode;
-using api::Result;
-
-// A file that is held open takes its place on the disk though it be removed.
-constexpr std::uint64_t largest_at_hand = 1 << 20;
-
-Problem no_such_render() { return {ProblemCode::not_found, "There is no render of this id.", {}}; }
-
-api::RenderStatus status_of(const Job& job) {
-  api::RenderStatus status;
-  status.id = job.id;
-  status.state = job.state;
-  status.created_at = rfc3339(job.created_ms);
-  if (job.started_ms) status.started_at = rfc3339(*job.started_ms);
-  if (job.finished_ms) status.finished_at = rfc3339(*job.finished_ms);
-  status.progress = job.progress;
-  status.request = job.request;
-  status.material = job.material;
-  status.stats = job.stats;
-  status.error = job.error;
-  status.cached = job.cached;
-  return status;
+JobService::JobService(const api::Catalog& catalog, const ServerConfig& config,
+                       const ColorConfig& colors, JobStore& store, ArtifactStore& artifacts,
+                       Metrics& metrics, Engine engine)
+    : catalog_(catalog),
+      config_(config),
+      store_(store),
+      metrics_(metrics),
+      janitor_(store, artifacts),
+      probe_(store, artifacts),
+      live_films_([this] { changes_.tell(); }),
+      explorables_(config.explorable_memory_bytes),
+      darkroom_{catalog, colors, store, artifacts, metrics, explorables_} {
+  janitor_.clean_up();
+  workers_ = std::make_unique<WorkerPool>(
+      Workshop{catalog, store, artifacts, metrics, live_films_, explorables_, std::move(engine),
+               config.threads_per_worker},
+      config.workers, [this] {
+        if (janitor_.keep_within(config_.artifact_bytes)) pictures_.forget();
+        changes_.tell();
+      });
 }
 
-}  // namespace
+JobService::~JobService() { shut_down(); }
 
-Result<Submission> JobService::submit(std::string_view document,
-                                      const std::optional<std::string>& idempotency_key) {
-  if (const auto problem = refusal()) return *problem;
-  auto parsed = api::parse_render_request(document, catalog_);
-  if (!parsed) return parsed.problem();
-  const auto& request = *parsed;
-
-  NewJob job;
-  job.request = api::canonical_json(request);
-  job.material = api::material_report(request, catalog_);
-  job.idempotency_key = idempotency_key;
-  if (const auto* target = std::get_if<SampleTarget>(&request.quality))
-    job.total_samples = target->samples;
-  const std::uint64_t pixels = std::uint64_t(request.width) * std::uint64_t(request.height);
-  job.first_pass = plan_pass(0, pixels, job.total_samples).value();
-  job.content = content_key(request, job.request, catalog_);
-
-  return guarded([&]() -> Result<Submission> {
-    auto outcome = store_.submit(job);
-    if (!outcome) return outcome.problem();
-    const auto& submitted = *outcome;
-    if (submitted.created) {
-      if (submitted.stored.cached)
-        metrics_.count_cache_hit();
-      else
-        metrics_.count_cache_miss();
-      workers_->wake();
-    }
-    return Submission{status_of(submitted.stored), submitted.created};
-  });
+std::optional<api::Problem> JobService::refusal() const {
+  if (!changes_.ended()) return std::nullopt;
+  return api::Problem{api::ProblemCode::overloaded, "The service is shutting down.", {}};
 }
 
-Result<api::RenderStatus> JobService::get(const std::string& id) const {
-  return guarded([&]() -> Result<api::RenderStatus> {
-    const std::optional<Job> job = store_.find(id);
-    if (!job || job->sweep_image) return no_such_render();
-    return status_of(*job);
-  });
+std::optional<std::string> JobService::unready_reason() {
+  if (const auto problem = refusal()) return problem->detail;
+  return probe_.failure();
 }
 
-Result<ToldText> JobService::tell(const std::string& id) {
-  if (auto known = ended_.find(id)) return std::move(*known);
-  const auto now = ended_.now();
-  const auto status = get(id);
-  if (!status) return status.problem();
-  ToldText text = told(*status);
-  if (api::is_end(text->state)) ended_.keep(id, text, now);
-  return text;
+void JobService::stop_work(const std::string& job_id) {
+  workers_->stop_job(job_id);
+  janitor_.discard(job_id);
 }
 
-Result<RenderPage> JobService::list(const ListQuery& query) const {
-  const auto filter = page_filter(query);
-  if (!filter) return filter.problem();
-  return guarded([&]() -> Result<RenderPage> {
-    std::vector<Job> jobs = store_.list(*filter);
-    RenderPage page;
-    page.next_cursor = cut_page(jobs, query.limit);
-    for (const Job& job : jobs) page.renders.push_back(status_of(job));
-    return page;
-  });
-}
-
-Result<api::RenderStatus> JobService::cancel(const std::string& id) {
-  return guarded([&]() -> Result<api::RenderStatus> {
-    const std::optional<Job> known = store_.find(id);
-    if (!known || known->sweep_image) return no_such_render();
-    store_.cancel(id);
-    const std::optional<Job> job = store_.find(id);
-    if (!job) return no_such_render();
-    if (job->state == api::JobState::canceled) {
-      workers_->stop_job(id);
-      discard_files(id);
-      changed();
-    }
-    return status_of(*job);
-  });
-}
-
-std::optional<Problem> JobService::remove(const std::string& id) {
-  using Unused = std::vector<StoredResult>;
-  const auto result = guarded([&]() -> Result<Unused> {
-    const std::optional<Job> known = store_.find(id);
-    if (!known || known->sweep_image) return no_such_render();
-    const std::optional<Unused> unused = store_.remove(id);
-    if (!unused) return no_such_render();
-    return *unused;
-  });
-  if (!result) return result.problem();
-  ended_.forget();
+void JobService::discard(const std::vector<StoredResult>& unused) {
   pictures_.forget();
-  workers_->stop_job(id);
-  discard_files(id);
-  for (const StoredResult& unused : *result) discard_result(unused);
-  changed();
-  return std::nullopt;
+  for (const StoredResult& result : unused) janitor_.discard(result);
 }
 
-Result<ImageFile> JobService::image(const std::string& id, const ImageQuery& query) {
-  if (auto known = pictures_.find({id, query}); known && known->file->is_as_opened())
-    return std::move(*known);
-  const auto now = pictures_.now();
-  auto made = guarded([&]() -> Result<ImageFile> {
-    const std::optional<Job> job = store_.find(id);
-    if (!job || job->sweep_image) return no_such_render();
-    if (query.partial && !api::is_end(job->state))
-      if (const auto live = live_films_.find(id)) {
-        auto partial = partial_image(darkroom_, *live, id, job->request, query);
-        if (partial) return std::move(*partial);
-      }
-    if (auto problem = no_picture(job->state)) return std::move(*problem);
-    return image_artifact(darkroom_, store_.pictures(id).at(0).content, job->request, query);
-  });
-  // Removed while it was read: then that is the answer.
-  if (!made && made.problem().code == ProblemCode::gone && !store_.find(id))
-    return no_such_render();
-  if (made && made->file->size() <= largest_at_hand) pictures_.keep({id, query}, *made, now);
-  return made;
+void JobService::shut_down(std::chrono::milliseconds drain) {
+  changes_.end();
+  workers_->drain(drain);
+  workers_->stop();
 }
 
 }  // namespace translucube::server

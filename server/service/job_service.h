@@ -1,12 +1,11 @@
 #pragma once
 
-// What the service does, free of HTTP: the routes call this and nothing below it.
+// The room of what can be asked of the service, free of HTTP: it turns documents and ids of clients
+// into work and answers. Calls come in here and nowhere below; how a request travels, and how a
+// picture is traced, stays out.
 
 #include <chrono>
-#include <condition_variable>
-#include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,19 +22,23 @@
 #include "server/pictures/explorable_cache.h"
 #include "server/pictures/image_artifacts.h"
 #include "server/pictures/live_films.h"
+#include "server/service/changes.h"
+#include "server/service/disk_probe.h"
+#include "server/service/janitor.h"
+#include "server/service/page.h"
 #include "server/store/artifact_store.h"
 #include "server/store/job_store.h"
-#include "server/worker/worker.h"
+#include "server/worker/worker_pool.h"
 
 namespace translucube::server {
 
 template <typename Status>
-struct Accepted {
+struct SubmissionOf {
   Status status;
   bool created = false;  ///< false: the idempotency key named it already
 };
-using Submission = Accepted<api::RenderStatus>;
-using SweepSubmission = Accepted<api::SweepStatus>;
+using Submission = SubmissionOf<api::RenderStatus>;
+using SweepSubmission = SubmissionOf<api::SweepStatus>;
 
 /// The state of a render or sweep, as a client is told it.
 struct Told {
@@ -59,21 +62,16 @@ struct SweepPage {
   std::optional<std::string> next_cursor;
 };
 
-struct ListQuery {
-  std::optional<api::JobState> state;
-  std::optional<std::string> cursor;
-  int limit = 50;
-};
-
 /// Accepts, reports, cancels and removes renders and sweeps, and owns the workers that trace them.
 /// Safe to share by threads. The catalog, config, colours, stores and metrics outlive it.
 class JobService {
  public:
   JobService(const api::Catalog& catalog, const ServerConfig& config, const ColorConfig& colors,
-             JobStore& store, ArtifactStore& artifacts, Metrics& metrics, Engine engine = {});
+             JobStore& store, ArtifactStore& artifacts, Metrics& metrics,
+             Engine engine = renderer_engine());
   ~JobService();
 
-  // Renders (job_service.cpp).
+  // Renders (renders.cpp).
   api::Result<Submission> submit(std::string_view document,
                                  const std::optional<std::string>& idempotency_key);
   api::Result<api::RenderStatus> get(const std::string& id) const;
@@ -88,7 +86,7 @@ class JobService {
   /// Samples of what `image` with `partial` shows of a render that is being traced; 0: nothing.
   std::uint32_t samples_to_see(const std::string& id) const { return live_films_.samples(id); }
 
-  // Sweeps (job_service_sweeps.cpp).
+  // Sweeps (sweeps.cpp).
   /// What a dry run answers, JSON text.
   api::Result<std::string> count_sweep(std::string_view document) const;
   api::Result<SweepSubmission> submit_sweep(std::string_view document,
@@ -105,10 +103,7 @@ class JobService {
   /// The contact sheet, of what is there so far.
   api::Result<ImageFile> sheet(const std::string& id, const ImageQuery& query);
 
-  // Changes (job_service_changes.cpp).
-  /// Calls `look` now and after every change, until it returns true, the time is over or the
-  /// service stops.
-  void watch(std::chrono::milliseconds time, const std::function<bool()>& look);
+  // Watching.
   /// Those after `number`, and whether the last of them is the end of the render or sweep.
   struct Events {
     std::vector<Event> events;
@@ -116,6 +111,8 @@ class JobService {
   };
   api::Result<Events> events_of_render(const std::string& id, std::uint64_t after) const;
   api::Result<Events> events_of_sweep(const std::string& id, std::uint64_t after) const;
+  /// Ended with the service.
+  Changes& changes() { return changes_; }
 
   /// Empty if the service can take work, else the reason why not.
   std::optional<std::string> unready_reason();
@@ -124,32 +121,19 @@ class JobService {
   /// Refuses new work and ends all waiting. Passes under way may take `drain` to end, so that they
   /// are kept; then stops the workers at their next tile and gives their tasks back to the store.
   void shut_down(std::chrono::milliseconds drain = {});
-  bool stopping() const;
 
  private:
   std::optional<api::Problem> refusal() const;
-  void clean_artifacts();
-  void keep_within_quota();
-  void discard_files(const std::string& folder);
-  void discard_result(const StoredResult& result);
-  void changed();
+  void stop_work(const std::string& job_id);
+  void discard(const std::vector<StoredResult>& unused);
 
   const api::Catalog& catalog_;
   const ServerConfig& config_;
-  const ColorConfig& colors_;
   JobStore& store_;
-  ArtifactStore& artifacts_;
   Metrics& metrics_;
-
-  mutable std::mutex mutex_;
-  std::condition_variable change_;
-  std::uint64_t changes_ = 0;
-  bool stopping_ = false;
-
-  std::mutex probe_mutex_, quota_mutex_;
-  std::chrono::steady_clock::time_point probed_at_{};
-  std::optional<std::string> probe_failure_;
-
+  Changes changes_;
+  Janitor janitor_;
+  DiskProbe probe_;
   LiveFilms live_films_;
   ExplorableCache explorables_;
   Darkroom darkroom_;

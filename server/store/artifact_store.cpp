@@ -166,7 +166,6 @@ Film ArtifactStore::read_film(const std::string& id, std::uint32_t pass_count) c
       if (!file) break;
       const PassFilm pass = pass_film_from_bytes(file->read_all());
       if (pass.pass.index != film.passes) break;
-      if (film.passes == 0) film = Film(pass.width, pass.height, pass.lanes, pass.shares);
       merge(film, pass);
     }
   } catch (const FileError&) {

@@ -1,25 +1,25 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <stop_token>
 
-#include "renderer/light/environment_cache.h"
+#include "renderer/film/explorable_develop.h"
 #include "renderer/render.h"
 
 namespace translucube::server {
 
-/// What a worker asks of the renderer, as values: tests put failures in its place.
-struct Engine {
-  std::function<std::shared_ptr<const Scene>(const SceneSpec&)> build =
-      [environments = std::make_shared<EnvironmentCache>()](const SceneSpec& spec) {
-        return build_scene(spec, environments.get());
-      };
-  std::function<std::optional<PassFilm>(const Scene&, const Pass&, int threads, std::stop_token)>
-      trace = trace_pass;
-  std::function<RenderStats(const Scene&, const Film&, double seconds, int threads)> stats =
-      stats_of;
+/// A scene that is ready to be traced, on this machine and by any number of threads.
+struct TracedScene {
+  std::function<std::optional<PassFilm>(const Pass&, int threads, std::stop_token)> trace;
+  std::function<RenderStats(const Film&, double seconds, int threads)> stats;
+  std::optional<ExplorableBasis> explorable;  ///< of a scene whose film keeps the path lengths
 };
+
+/// What a worker asks of the renderer: tests put another in its place.
+using Engine = std::function<TracedScene(const SceneSpec&)>;
+
+/// The renderer itself. It keeps the environments that it has read last.
+Engine renderer_engine();
 
 }  // namespace translucube::server

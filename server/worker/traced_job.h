@@ -6,10 +6,11 @@
 #include "api/base/result.h"
 #include "api/request/catalog.h"
 #include "server/store/job_store.h"
+#include "server/store/submission.h"
 
 namespace translucube::server {
 
-/// A job as the renderer sees it: the requests whose pictures are developed from its one tracing. A
+/// A job as the renderer sees it: the requests whose pictures are the lanes of its one film. A
 /// render has one; an image of a sweep one for each of its points. Never empty.
 struct TracedJob {
   std::vector<api::RenderRequest> requests;
@@ -17,8 +18,8 @@ struct TracedJob {
   std::vector<std::string> contents;   ///< of each: where its picture goes
 
   const Quality& quality() const { return requests.front().quality; }
-  std::uint64_t pixels() const {
-    return std::uint64_t(requests.front().width) * std::uint64_t(requests.front().height);
+  std::optional<Pass> pass(std::uint32_t index) const {
+    return planned_pass(requests.front(), index);
   }
 };
 

@@ -10,6 +10,7 @@
 #include "api/answer/render_status.h"
 #include "api/request/canonical.h"
 #include "api/request/sweep.h"
+#include "picture/image_format.h"
 #include "tests/api/fixture.h"
 
 namespace translucube::api {
@@ -188,6 +189,31 @@ TEST(OpenApi, ObjectsAreThoseOfTheListing) {
   expect_same_parameters(schema("Backdrop")["oneOf"][1], listing["backdrop"]);
   expect_same_parameters(schema("Material")["properties"]["oil_film"]["oneOf"][1],
                          listing["oil_film"]);
+}
+
+TEST(OpenApi, ImageFormatsAreThoseOfTheTable) {
+  json names = json::array();
+  std::set<std::string> mime_types;
+  for (const ImageFormatRow& row : image_formats) {
+    names.push_back(row.name);
+    mime_types.emplace(row.mime_type);
+  }
+  int calls = 0;
+  for (const auto& [path, item] : document()["paths"].items()) {
+    if (!item.contains("get") || !item["get"].contains("parameters")) continue;
+    for (const json& parameter : item["get"]["parameters"]) {
+      if (parameter.value("name", "") == "format") {
+        EXPECT_EQ(parameter["schema"]["enum"], names) << path;
+        ++calls;
+      }
+      if (parameter.value("name", "") == "Accept") {
+        EXPECT_EQ(parameter["description"], list_formats(&ImageFormatRow::mime_type, ", ") + '.');
+      }
+    }
+  }
+  EXPECT_EQ(calls, 3) << "image, point image, sheet";
+  for (const char* response : {"Picture", "PartOfPicture"})
+    EXPECT_EQ(keys(document()["components"]["responses"][response]["content"]), mime_types);
 }
 
 TEST(OpenApi, AnswersHaveTheKeysOfTheirSchemas) {

@@ -28,8 +28,11 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::array all_formats = {ImageFormat::png, ImageFormat::exr, ImageFormat::tiff,
-                                    ImageFormat::jpeg};
+const std::vector<ImageFormat> all_formats = [] {
+  std::vector<ImageFormat> formats;
+  for (const ImageFormatRow& row : image_formats) formats.push_back(row.format);
+  return formats;
+}();
 
 class ImageIo : public testing::Test {
  protected:
@@ -76,14 +79,19 @@ std::string error_of(const std::filesystem::path& file) {
 }
 
 TEST_F(ImageIo, FormatsAreFoundByNameAndByExtension) {
-  EXPECT_EQ(image_format("png"), ImageFormat::png);
-  EXPECT_EQ(image_format(".JPG"), ImageFormat::jpeg);
-  EXPECT_EQ(image_format("jpeg"), ImageFormat::jpeg);
-  EXPECT_EQ(image_format("tif"), ImageFormat::tiff);
-  EXPECT_EQ(image_format("exr"), ImageFormat::exr);
-  EXPECT_EQ(image_format("gif"), std::nullopt);
-  EXPECT_EQ(image_format(""), std::nullopt);
-  for (const ImageFormat format : all_formats) EXPECT_EQ(image_format(name(format)), format);
+  EXPECT_EQ(format_named("png"), ImageFormat::png);
+  EXPECT_EQ(format_named("jpg"), std::nullopt);
+  EXPECT_EQ(format_of("a/b.png"), ImageFormat::png);
+  EXPECT_EQ(format_of("b.c.JPG"), ImageFormat::jpeg);
+  EXPECT_EQ(format_of("b.jpeg"), ImageFormat::jpeg);
+  EXPECT_EQ(format_of("b.tif"), ImageFormat::tiff);
+  EXPECT_EQ(format_of("b.exr"), ImageFormat::exr);
+  EXPECT_EQ(format_of("b.gif"), std::nullopt);
+  for (const char* none : {"", "b", "png", ".png", "b."}) EXPECT_EQ(format_of(none), std::nullopt);
+  for (const ImageFormat format : all_formats) {
+    EXPECT_EQ(format_named(name(format)), format);
+    EXPECT_EQ(format_of("b" + std::string(row_of(format).extension)), format);
+  }
   EXPECT_EQ(mime_type(ImageFormat::png), "image/png");
   EXPECT_EQ(mime_type(ImageFormat::jpeg), "image/jpeg");
 }

@@ -37,7 +37,6 @@ std::unique_ptr<ContributionBatch> random_batch() {
 std::map<std::string, Lane> lanes_of_all_kinds() {
   return {{"clear", ClearLane{}},
           {"opaque", OpaqueLane{}},
-          {"length", LengthLane{}},
           {"rgb", RgbLane{{0.3f, 0, 20}}},
           {"spectral", make_lane(narrow_band(), 0.7)},
           {"dense", make_lane(red_glass(), 1e5)}};

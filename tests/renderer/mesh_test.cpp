@@ -91,14 +91,14 @@ TEST(MeshRays, LeaveAndEnterOnceEach) {
   const BuiltMesh built = build_mesh(box({2, 2, 2}));
   const double half = 1 / std::sqrt(3.0);  // in units of the bounding sphere
   Hit hit;
-  ASSERT_TRUE(built.mesh.enter({0.1, 0.2, 5}, {0, 0, -1}, hit));
+  ASSERT_TRUE(built.mesh.intersect_outside({0.1, 0.2, 5}, {0, 0, -1}, hit));
   EXPECT_NEAR(hit.t, 5 - half, 1e-6);
   EXPECT_NEAR(hit.n.z, 1, 1e-9);
-  ASSERT_TRUE(built.mesh.exit(hit.p, {0, 0, -1}, 1e30, hit));
+  ASSERT_TRUE(built.mesh.intersect_inside(hit.p, {0, 0, -1}, 1e30, hit));
   EXPECT_NEAR(hit.t, 2 * half, 1e-6);
   EXPECT_NEAR(hit.n.z, -1, 1e-9);
-  EXPECT_FALSE(built.mesh.enter(hit.p, {0, 0, -1}, hit));
-  EXPECT_FALSE(built.mesh.exit({0, 0, 0}, {0, 0, -1}, 0.5 * half, hit));
+  EXPECT_FALSE(built.mesh.intersect_outside(hit.p, {0, 0, -1}, hit));
+  EXPECT_FALSE(built.mesh.intersect_inside({0, 0, 0}, {0, 0, -1}, 0.5 * half, hit));
   EXPECT_TRUE(built.mesh.inside({0.9 * half, -0.9 * half, 0}));
   EXPECT_FALSE(built.mesh.inside({1.1 * half, 0, 0}));
 }

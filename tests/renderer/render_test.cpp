@@ -35,22 +35,15 @@ TEST(Passes, OfAnOpenEndedRenderAreThoseOfAFixedOne) {
   }
 }
 
-Scene small_scene() {
-  Scene scene = body(Sphere{}, material(1.5, 0.2, 3));
-  scene.environment = half_space_light(true);
-  look_from_afar(scene, 1.2, 40);
-  return scene;
-}
-
 TEST(Render, OfAnotherSeedIsAnotherPicture) {
-  Scene scene = small_scene();
+  Scene scene = half_lit_sphere();
   const Film first = trace(scene, 4);
   scene.seed = 2;
   EXPECT_NE(first.sum, trace(scene, 4).sum);
 }
 
 TEST(Render, ContinuesFromAFilmReadBackWithTheSameBits) {
-  const Scene scene = small_scene();
+  const Scene scene = half_lit_sphere();
   const Film whole = trace(scene, 24);
   Film film(scene.width, scene.height, 1);
   for (std::uint32_t i = 0; const auto pass = plan_pass(i, 40 * 40, 24); ++i) {
@@ -64,14 +57,14 @@ TEST(Render, ContinuesFromAFilmReadBackWithTheSameBits) {
 }
 
 TEST(Render, KeepsToItsTime) {
-  const RenderResult result = render(small_scene(), TimeTarget{0.3}, 2);
+  const RenderResult result = render(half_lit_sphere(), TimeTarget{0.3}, 2);
   EXPECT_GT(result.film.passes, 0u);
   EXPECT_GT(result.stats.seconds, 0.25);
   EXPECT_LT(result.stats.seconds, 1.5);
 }
 
 TEST(Film, RefusesBytesThatAreShortForeignOrChanged) {
-  const Scene scene = small_scene();
+  const Scene scene = half_lit_sphere();
   const Film film = trace(scene, 8);
   const std::string bytes = to_bytes(film);
   EXPECT_NO_THROW(film_from_bytes(bytes));
@@ -87,13 +80,13 @@ TEST(Film, RefusesBytesThatAreShortForeignOrChanged) {
 }
 
 TEST(Film, RefusesPassesOutOfOrder) {
-  const Scene scene = small_scene();
+  const Scene scene = half_lit_sphere();
   Film film(40, 40, 1);
   EXPECT_THROW(merge(film, *trace_pass(scene, *plan_pass(1, 1600), 1)), std::invalid_argument);
 }
 
 TEST(ExplainSample, AddsUpToTheSampleThatItReplays) {
-  const Scene scene = small_scene();
+  const Scene scene = half_lit_sphere();
   const std::string log = explain_sample(scene, 20, 20, 5);
   EXPECT_NE(log.find("emit"), std::string::npos);
   EXPECT_NE(log.find("enter"), std::string::npos);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "picture/image_io.h"
+#include "picture/half_image.h"
 #include "renderer/base/half.h"
 #include "renderer/film/explorable_file.h"
 #include "renderer/optics/material_cube.h"

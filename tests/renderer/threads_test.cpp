@@ -31,15 +31,8 @@ void expect_same_bits_by_any_number_of_threads(const Scene& scene, std::uint32_t
   EXPECT_EQ(one.sum, five.sum);
 }
 
-Scene half_lit(AnyShape shape, const Material& m) {
-  Scene scene = body(std::move(shape), m);
-  scene.environment = half_space_light(true);
-  look_from_afar(scene, 1.2, 40);
-  return scene;
-}
-
 TEST(Threads, TraceTheSameBitsHoweverMany) {
-  expect_same_bits_by_any_number_of_threads(half_lit(Sphere{}, material(1.5, 0.2, 3)), 19);
+  expect_same_bits_by_any_number_of_threads(half_lit_sphere(), 19);
 }
 
 // Its distance grid is filled by whoever comes first.
@@ -62,7 +55,7 @@ TEST(Threads, TraceTheDipoleWithTheSameBitsHoweverMany) {
 }
 
 TEST(Threads, StopWhenAskedTo) {
-  const Scene scene = half_lit(Sphere{}, material(1.5, 0.2, 3));
+  const Scene scene = half_lit_sphere();
   std::stop_source stop;
   const RenderResult result =
       render(scene, SampleTarget{1u << 20}, 2, stop.get_token(), [&](const Progress& p) {

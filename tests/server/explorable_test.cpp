@@ -45,7 +45,7 @@ class Explored {
 
  private:
   TempFolder folder_;
-  TestService service_{folder_.path(), Engine{}};
+  TestService service_{folder_.path(), renderer_engine()};
 };
 
 TEST(ExplorableService, RedevelopsWithoutTracingWhatARenderOfItsOwnWouldShow) {

@@ -49,19 +49,7 @@ struct FakeRenderer {
   std::function<void(const SceneSpec&)> before_build = [](const SceneSpec&) {};
 
   Engine engine() {
-    return {[this](const SceneSpec& spec) { return build(spec); },
-            [this](const Scene& scene, const Pass& pass, int, std::stop_token stop) {
-              return trace(scene, pass, stop);
-            },
-            [](const Scene&, const Film& film, double seconds, int threads) {
-              RenderStats stats;
-              stats.samples = film.samples;
-              stats.seconds = seconds;
-              stats.threads = threads;
-              stats.relative_error = relative_error(film);
-              stats.transport = "walk";
-              return stats;
-            }};
+    return [this](const SceneSpec& spec) { return build(spec); };
   }
 
  private:
@@ -70,16 +58,28 @@ struct FakeRenderer {
     std::uint64_t seed;
   };
 
-  std::shared_ptr<const Scene> build(const SceneSpec& spec) {
+  TracedScene build(const SceneSpec& spec) {
     ++builds;
     before_build(spec);
-    const auto picture = std::make_shared<Picture>(Picture{
-        spec.width, spec.height, 1 + static_cast<int>(spec.more_absorptions.size()), spec.seed});
-    return {picture, reinterpret_cast<const Scene*>(picture.get())};
+    const Picture picture{spec.width, spec.height,
+                          1 + static_cast<int>(spec.more_absorptions.size()), spec.seed};
+    return {[this, picture](const Pass& pass, int, std::stop_token stop) {
+              return trace(picture, pass, stop);
+            },
+            stats_of_fake, std::nullopt};
   }
 
-  std::optional<PassFilm> trace(const Scene& scene, const Pass& pass, std::stop_token stop) {
-    const auto& picture = reinterpret_cast<const Picture&>(scene);
+  static RenderStats stats_of_fake(const Film& film, double seconds, int threads) {
+    RenderStats stats;
+    stats.samples = film.samples;
+    stats.seconds = seconds;
+    stats.threads = threads;
+    stats.relative_error = relative_error(film);
+    stats.transport = "walk";
+    return stats;
+  }
+
+  std::optional<PassFilm> trace(const Picture& picture, const Pass& pass, std::stop_token stop) {
     const int now = ++tracing;
     int most = most_tracing;
     while (now > most && !most_tracing.compare_exchange_weak(most, now)) {
@@ -140,7 +140,7 @@ class TestService {
 
   api::RenderStatus wait(const std::string& id, int seconds = 120) {
     auto result = service.get(id);
-    service.watch(std::chrono::seconds(seconds), [&] {
+    service.changes().watch(std::chrono::seconds(seconds), [&] {
       result = service.get(id);
       return !result || api::is_end(result->state);
     });

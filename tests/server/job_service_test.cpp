@@ -108,7 +108,7 @@ TEST(JobServiceTest, WaitingEndsWithTheRenderWithTheTimeOrWithTheService) {
   renderer.milliseconds_per_pass = 60'000;
   const std::string late = tested.submit(small_request(4, 2)).id;
   const auto start = std::chrono::steady_clock::now();
-  tested.service.watch(std::chrono::milliseconds(100), [] { return false; });
+  tested.service.changes().watch(std::chrono::milliseconds(100), [] { return false; });
   EXPECT_FALSE(is_end(tested.state(late)));
   EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(100));
   std::jthread stopper([&] {
@@ -170,7 +170,7 @@ TEST(JobServiceTest, AServiceThatDrainsIsNotReadyAndKeepsThePassUnderWay) {
   const std::string id = tested.submit(small_request(1000)).id;
   ASSERT_TRUE(eventually([&] { return renderer.tracing == 1; }));
   std::jthread stopper([&] { tested.service.shut_down(std::chrono::seconds(60)); });
-  ASSERT_TRUE(eventually([&] { return tested.service.stopping(); }));
+  ASSERT_TRUE(eventually([&] { return tested.service.changes().ended(); }));
   EXPECT_TRUE(tested.service.unready_reason());
   EXPECT_EQ(renderer.passes, 0) << "it is not ready while the pass goes on";
   const auto start = std::chrono::steady_clock::now();

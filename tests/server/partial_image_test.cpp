@@ -22,6 +22,20 @@ struct Gate {
   }
 };
 
+using TraceOnce = std::function<std::optional<PassFilm>()>;
+
+/// The real renderer with something done around each pass.
+Engine around_passes(std::function<std::optional<PassFilm>(const Pass&, const TraceOnce&)> around) {
+  return [around = std::move(around), real = renderer_engine()](const SceneSpec& spec) {
+    TracedScene scene = real(spec);
+    scene.trace = [around, trace = scene.trace](const Pass& pass, int threads,
+                                                std::stop_token stop) {
+      return around(pass, [&] { return trace(pass, threads, stop); });
+    };
+    return scene;
+  };
+}
+
 struct PartialUnderTest {
   explicit PartialUnderTest(Engine engine)
       : service(folder.path(), std::move(engine)),
@@ -126,12 +140,10 @@ std::string explorable_request(int samples) {
 
 TEST(PartialImageTest, AnExplorableRenderIsSeenThroughAnyAbsorberWhileItIsTraced) {
   Gate gate;
-  Engine engine;
-  engine.trace = [&](const Scene& scene, const Pass& pass, int threads, std::stop_token stop) {
+  PartialUnderTest tested(around_passes([&](const Pass& pass, const auto& trace) {
     gate.wait_for(pass);
-    return trace_pass(scene, pass, threads, stop);
-  };
-  PartialUnderTest tested(std::move(engine));
+    return trace();
+  }));
   const std::string id = tested.service.submit(explorable_request(16)).id;
   gate.open = 1;
   ASSERT_TRUE(eventually([&] { return tested.service.service.samples_to_see(id) == 4; }));
@@ -159,14 +171,14 @@ TEST(PartialImageTest, RedevelopmentComesFromMemoryAndFromTheDiskToTheSameBits) 
     return service.service.image(id, query)->file->read_all();
   };
   {
-    TestService service(folder.path(), Engine{});
+    TestService service(folder.path(), renderer_engine());
     id = service.submit(explorable_request(4)).id;
     service.wait(id);
     const std::size_t files = service.artifacts.names(service.content(id)).size();
     first = developed(service);
     EXPECT_EQ(service.artifacts.names(service.content(id)).size(), files) << "it is not kept";
   }
-  TestService restarted(folder.path(), Engine{});
+  TestService restarted(folder.path(), renderer_engine());
   EXPECT_EQ(developed(restarted), first);
   std::filesystem::remove_all(folder.path() / "artifacts" / restarted.content(id));
   EXPECT_FALSE(restarted.service.image(id, query))
@@ -176,13 +188,12 @@ TEST(PartialImageTest, RedevelopmentComesFromMemoryAndFromTheDiskToTheSameBits) 
 TEST(PartialImageTest, AnExplorableFilmIsOnTheDiskWhenItIsPutDown) {
   const TempFolder undisturbed, restarted;
   std::atomic<int> passes = 0;
-  Engine counting;
-  counting.trace = [&](const Scene& scene, const Pass& pass, int threads, std::stop_token stop) {
-    auto film = trace_pass(scene, pass, threads, stop);
+  const Engine counting = around_passes([&](const Pass&, const auto& trace) {
+    auto film = trace();
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     ++passes;
     return film;
-  };
+  });
   std::string expected, id;
   int planned = 0;
   {

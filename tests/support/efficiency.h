@@ -38,7 +38,7 @@ inline Efficiency efficiency(const PeerMaterial& material, std::uint64_t seed) {
   return {{{"relative variance", error * samples},
            {"flights", static_cast<double>(counters.flights) / n},
            {"boundary events", static_cast<double>(counters.boundary_events) / n},
-           {"next-event estimations", static_cast<double>(counters.connections) / n}}};
+           {"next-event estimations", static_cast<double>(counters.light_samples) / n}}};
 }
 
 }  // namespace translucube::test

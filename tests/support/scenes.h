@@ -29,13 +29,27 @@ inline Estimate image_mean(const Film& film, int lane = 0) {
   return e;
 }
 
-/// A camera from so far away that its rays are parallel (to 1e-5), along -z, over [-half, half]^2.
-inline void look_from_afar(Scene& scene, double half, int size) {
+/// A camera from so far away that its rays are parallel (to 1e-5), along -z (`side` 1) or z (-1),
+/// over [-half, half]^2.
+inline void look_from_afar(Scene& scene, double half, int size, int side = 1) {
   constexpr double distance = 1e5;
   scene.width = scene.height = size;
-  scene.camera = Camera({0, 0, distance}, {0, 0, 0}, {0, 1, 0},
+  scene.camera = Camera({0, 0, side * distance}, {0, 0, 0}, {0, 1, 0},
                         2 * std::atan(half / distance) * 180 / std::numbers::pi, size, size);
 }
+
+/// Not an absorber but a view: radiance times length, whose mean over a clear image is the mean
+/// path. Exact, as the table is linear between its nodes.
+inline Lane length_lane() {
+  constexpr int octaves = 40;
+  return SpectralLane(1, ColorOperatorTable(octaves, [](double one_and_length) {
+                        const auto length = static_cast<float>(one_and_length - 1);
+                        return ColorOperator{length, 0, 0, 0, length, 0, 0, 0, length};
+                      }));
+}
+
+/// A plate of thickness 1 so wide that it is an infinite slab.
+inline Polytope wide_plate() { return make_box({200, 200, 0.5}); }
 
 inline Scene body(AnyShape shape, const Material& material, std::uint64_t seed = 1) {
   Scene scene;
@@ -56,7 +70,7 @@ inline Material material(double ior, double alpha, double sigma_s, double g = 0)
   return m;
 }
 
-/// Radiance 1 from the half space z > 0 (or z < 0), 0 from the other one.
+/// Radiance 1 from the half space z > 0 (or z < 0), 0 from the other one; it is looked for.
 inline ImageEnvironment half_space_light(bool above) {
   Image image(2048, 64);
   for (int y = 0; y < image.height; ++y)
@@ -66,6 +80,22 @@ inline ImageEnvironment half_space_light(bool above) {
         image.pixels[3 * (std::size_t(y) * image.width + x) + c] = towards_z == above ? 1.0f : 0.0f;
     }
   return ImageEnvironment(image, 0, 1);
+}
+
+/// A rough, scattering sphere under half a sky, small.
+inline Scene half_lit_sphere() {
+  Scene scene = body(Sphere{}, material(1.5, 0.2, 3));
+  scene.environment = half_space_light(true);
+  look_from_afar(scene, 1.2, 40);
+  return scene;
+}
+
+/// Radiance 1 from the half space z < 0 once more, that of a light table behind the body: nothing
+/// looks for it, so that paths alone find it.
+inline void light_by_a_table(Scene& scene) {
+  scene.environment = UniformEnvironment{{0, 0, 0}};
+  scene.backdrop = Backdrop{};
+  scene.backdrop->z = -2;
 }
 
 /// Many passes of few samples, so that the spread between them tells the error.

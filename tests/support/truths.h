@@ -33,7 +33,7 @@ inline Estimate over_the_disc(const Estimate& image, double background) {
 /// The length inside [radii] of parallel light on a shape that looks like a unit sphere.
 inline Scene path_scene(AnyShape shape, const Material& m, std::uint64_t seed = 1, int size = 64) {
   Scene scene = body(std::move(shape), m, seed);
-  scene.lanes = {LengthLane{}};
+  scene.lanes = {length_lane()};
   look_from_afar(scene, 1.0, size);
   return scene;
 }
@@ -46,7 +46,7 @@ inline Estimate mean_path_of(AnyShape shape, const Material& m, std::uint32_t sa
 
 /// A slab of thickness 1 seen along its normal, with light from this side or from the other.
 inline Scene lit_slab_scene(const Material& m, float sigma_a, bool above, std::uint64_t seed = 1) {
-  Scene scene = body(Slab{}, m, seed);
+  Scene scene = body(wide_plate(), m, seed);
   scene.environment = half_space_light(above);
   scene.lanes = {RgbLane{{sigma_a, sigma_a, sigma_a}}};
   look_from_afar(scene, 0.1, 64);

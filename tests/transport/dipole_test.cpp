@@ -11,7 +11,7 @@
 
 #include "renderer/optics/fresnel.h"
 #include "renderer/optics/material_cube.h"
-#include "renderer/transport/dipole_exit.h"
+#include "renderer/transport/incident_point.h"
 #include "tests/support/chi2.h"
 #include "tests/support/meshes.h"
 #include "tests/support/repository.h"
@@ -134,7 +134,7 @@ TEST(DipoleSampling, OnAFlatSurfaceBringsTheClosedForm) {
       constexpr int n = 4000;
       for (int i = 0; i < n; ++i) {
         const double mu = (i + 0.5) / n;
-        let_in += 2 * pi / n * base.evaluate({0, 0, 1}, {0, 0, mu}).f_cos;
+        let_in += 2 * pi / n * base.transmittance(1) * base.emit({0, 0, mu}).f_cos;
       }
       const double expected =
           1 - let_in + let_in * base.entering() * diffuse_reflectance(albedo, 1.5);
@@ -164,7 +164,7 @@ TEST(DipoleSampling, OfAPlateSeesBothItsFaces) {
   // Light comes out of a face that went in at both: the near face brings within(reach), the far one
   // the rest of the ball of that radius.
   const double reach = 40;
-  Scene scene = dipole_alone(Slab{}, material(1.5, 0, 2), reach);
+  Scene scene = dipole_alone(wide_plate(), material(1.5, 0, 2), reach);
   look_from_afar(scene, 0.1, 16);
   const auto& dipole = std::get<DipoleInterior>(scene.interior);
   double both = dipole.radii.mass();

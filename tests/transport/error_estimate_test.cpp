@@ -11,15 +11,8 @@
 namespace translucube::test {
 namespace {
 
-Scene small_scene() {
-  Scene scene = body(Sphere{}, material(1.5, 0.2, 3));
-  scene.environment = half_space_light(true);
-  look_from_afar(scene, 1.2, 40);
-  return scene;
-}
-
 TEST(RelativeError, IsTheErrorAgainstAnIndependentRender) {
-  Scene scene = small_scene();
+  Scene scene = half_lit_sphere();
   const RenderResult result = render(scene, ErrorTarget{0.05}, 0);
   EXPECT_LE(result.stats.relative_error, 0.05);
   scene.seed = 77;
@@ -35,7 +28,7 @@ TEST(RelativeError, IsTheErrorAgainstAnIndependentRender) {
 }
 
 TEST(Variance, OfThePixelsIsTheSpreadBetweenSeeds) {
-  Scene scene = small_scene();
+  Scene scene = half_lit_sphere();
   double spread = 0, estimate = 0;
   std::vector<double> sum(40 * 40 * 3, 0), squares(40 * 40 * 3, 0);
   constexpr int runs = 24;

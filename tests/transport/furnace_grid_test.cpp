@@ -154,7 +154,7 @@ TEST(FurnaceGrid, TheBoxFillsTheImage) {
   for (const double x : {0.0, double(pixels)})
     for (const double y : {0.0, double(pixels)})
       EXPECT_TRUE(std::get<Mesh>(scene.shape)
-                      .enter(scene.camera.position, scene.camera.direction(x, y), hit));
+                      .intersect_outside(scene.camera.position, scene.camera.direction(x, y), hit));
 }
 
 TEST(FurnaceGrid, CornersAndAFixedSelectionVanish) {

@@ -41,7 +41,7 @@ TEST(WhiteFurnace, AKnotOfGlassVanishes) {
 
 TEST(MeanPathLength, OfABallOfTrianglesIsThatOfTheSphere) {
   Scene scene = mesh_body(icosphere(5), material(1.5, 0, 2));
-  scene.lanes = {LengthLane{}};
+  scene.lanes = {length_lane()};
   look_from_afar(scene, 1.0, 48);
   const Estimate e = image_mean(trace(scene, 256));
   EXPECT_NEAR(e.mean / (std::numbers::pi / 4) / 3, 1, 6e-3) << e.standard_error;

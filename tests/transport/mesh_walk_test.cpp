@@ -17,7 +17,7 @@ Vec3 point_inside(const Mesh& mesh, double depth, Rng& rng) {
   while (true) {
     const Vec3 d = sample_isotropic(rng);
     Hit hit;
-    if (!mesh.enter(2.0 * sample_isotropic(rng), d, hit)) continue;
+    if (!mesh.intersect_outside(2.0 * sample_isotropic(rng), d, hit)) continue;
     const Vec3 p = hit.p - depth * rng.uniform() * hit.n;
     if (mesh.inside(p)) return p;
   }
@@ -59,8 +59,8 @@ TEST(MeshDistance, IsFreeInEveryDirection) {
         for (int j = 0; j < 300; ++j) {
           Hit hit;
           const Vec3 d = sample_isotropic(rng);
-          EXPECT_FALSE(b.least > 0 && mesh.exit(p, d, b.least, hit)) << depth;
-          met |= mesh.exit(p, d, 1.5 * b.most + 1e-6, hit);
+          EXPECT_FALSE(b.least > 0 && mesh.intersect_inside(p, d, b.least, hit)) << depth;
+          met |= mesh.intersect_inside(p, d, 1.5 * b.most + 1e-6, hit);
         }
         EXPECT_TRUE(met) << depth << " " << b.most;  // a bound from above that is none
       }
@@ -123,7 +123,7 @@ MeanLength mean_length(const TriangleMesh& mesh, const Medium& medium, double io
         (a + root * (1 - u.v) * (b - a) + root * u.v * (c - a) - built.center) * (1 / built.radius);
     const Vec3 n = normalize(cross(b - a, c - a));
     Hit hit;  // where single precision has that point
-    EXPECT_TRUE(built.mesh.enter(p + 0.01 * n, -n, hit));
+    EXPECT_TRUE(built.mesh.intersect_outside(p + 0.01 * n, -n, hit));
     return Entry{hit.p, hit.n};
   };
   const double chord = 4 * volume(mesh) / surface_area(mesh) / built.radius;

@@ -1,4 +1,4 @@
-// Rough interfaces in SIMD: the values are those of the scalar microsurface, the two ways to light
+// Rough interfaces in SIMD: the values are those of the closed form, the two ways to light
 // add up, and the instruction sets agree.
 
 #include "renderer/optics/microsurface_batch.h"
@@ -12,9 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "renderer/optics/microsurface.h"
 #include "renderer/transport/walk.h"
-#include "tests/support/scenes.h"
+#include "tests/support/microsurface.h"
 
 namespace translucube::test {
 namespace {
@@ -51,7 +50,7 @@ Estimate light_of(double alpha, double eta, bool from_outside, Vec3 wo, std::uin
         sum += lit.share[i] * lights.radiance[lit.light[i]].g;
       const MicrosurfaceBatch::Sent& sent = batch->sent();
       for (std::size_t i = 0; i < sent.size; ++i) {
-        const EnvironmentValue light = image.value_from({sent.x[i], sent.y[i], sent.z[i]});
+        const EnvironmentValue light = image.value_from(sent.direction[i]);
         const double sought = lights_each * light.pdf;
         sum += sent.weight[i] * light.radiance.g * sent.pdf[i] / (sent.pdf[i] + sought);
       }
@@ -79,41 +78,41 @@ TEST(MicrosurfaceBatch, LightLookedForAndLightFoundAddUp) {
         }
 }
 
-TEST(MicrosurfaceBatch, SharesAreThoseOfTheScalarMicrosurface) {
-  // At the first collision, averaged over its depth on both sides.
+TEST(MicrosurfaceBatch, SharesAreThoseOfASingleScatteringInClosedForm) {
+  // At the first collision, averaged over its depth on both sides and over which lights it asks.
   const LightList lights(mottled_light(), 5);
+  constexpr std::uint32_t lights_each = 8;
   for (const double alpha : {0.1, 0.5})
     for (const double eta : {1.5, 1 / 1.5})
       for (const bool from_outside : {true, false}) {
         const Vec3 wo{0.6, 0, 0.8};
         const BatchInterface interface { float(alpha), float(eta), from_outside, false };
         auto batch = std::make_unique<MicrosurfaceBatch>();
-        double ours = 0, scalar = 0, squares = 0;
+        double sum = 0, squares = 0;
         int rays = 0;
         Rng rng(6);
         for (int repeat = 0; repeat < 100; ++repeat) {
-          for (std::size_t i = 0; i < MicrosurfaceBatch::capacity; ++i, ++rays)
+          std::array<double, MicrosurfaceBatch::capacity> shares{};
+          for (std::size_t i = 0; i < shares.size(); ++i, ++rays)
             batch->push({0, 0, 1}, -wo, rng.uniform2(), rng.bits());
           batch->start(interface);
-          batch->collide(interface, lights, 8);
-          for (std::size_t i = 0; i < batch->lit().size; ++i) ours += batch->lit().share[i];
+          batch->collide(interface, lights, lights_each);
+          for (std::size_t i = 0; i < batch->lit().size; ++i)
+            shares[batch->lit().slot[i]] += batch->lit().share[i];
+          for (const double share : shares) sum += share, squares += share * share;
         }
-        for (int i = 0; i < rays; ++i) {
-          const MicroVertex vertex(Ggx{alpha}, eta, wo, rng.uniform_positive());
-          double share = 0;
-          const auto offset = static_cast<std::uint32_t>(rng.bits());
-          for (std::uint32_t k = 0; k < 8; ++k) {
-            const std::uint32_t l = (offset + k * LightList::size / 8) % LightList::size;
-            const Vec3 wi{lights.x[l], lights.y[l], lights.z[l]};
-            const LobeValue value = vertex.evaluate(wi);
-            if ((wi.z > 0) == from_outside && value.f_cos > 0)
-              share += value.f_cos / (8 * lights.pdf[l] + value.pdf);
-          }
-          scalar += share;
-          squares += share * share;
+        double expected = 0;
+        for (std::uint32_t l = 0; l < LightList::size; ++l) {
+          const Vec3 wi = lights.direction[l];
+          if ((wi.z > 0) != from_outside) continue;
+          const LobeValue value = single_scattering(Ggx{alpha}, eta, wo, wi);
+          if (value.f_cos > 0)
+            expected += value.f_cos / (lights_each * lights.pdf[l] + value.pdf) * lights_each /
+                        LightList::size;
         }
-        const double error = std::sqrt(2 * (squares / rays - std::pow(scalar / rays, 2)) / rays);
-        EXPECT_NEAR(ours / rays, scalar / rays, 4.5 * error) << "alpha " << alpha << " eta " << eta;
+        const double mean = sum / rays, error = std::sqrt((squares / rays - mean * mean) / rays);
+        EXPECT_NEAR(mean, expected, 4.5 * error) << "alpha " << alpha << " eta " << eta;
+        EXPECT_LT(error, 0.02 * expected) << "alpha " << alpha << " eta " << eta;
       }
 }
 

@@ -11,15 +11,10 @@
 #include "renderer/optics/microsurface.h"
 #include "renderer/optics/microsurface_batch.h"
 #include "tests/support/chi2.h"
+#include "tests/support/microsurface.h"
 
 namespace translucube::test {
 namespace {
-
-/// Smith's Lambda of a direction above the surface (Walter 2007, eq. 34).
-double lambda(double alpha, Vec3 w) {
-  const double tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
-  return 0.5 * (std::sqrt(1 + alpha * alpha * tan2) - 1);
-}
 
 Vec3 mirrored(Vec3 w) { return {w.x, w.y, -w.z}; }
 
@@ -30,9 +25,9 @@ Vec3 plain_walk(double alpha, double eta, Vec3 wo, Rng& rng) {
   bool beyond = false;
   while (true) {
     if (d.z < 0) {
-      below *= std::pow(rng.uniform_positive(), 1 / (1 + lambda(alpha, -d)));
+      below *= std::pow(rng.uniform_positive(), 1 / (1 + smith_lambda(alpha, -d)));
     } else {
-      below *= std::pow(rng.uniform_positive(), -1 / lambda(alpha, d));
+      below *= std::pow(rng.uniform_positive(), -1 / smith_lambda(alpha, d));
       if (below >= 1) return beyond ? mirrored(d) : d;
     }
     const Vec3 w = -d, m = Ggx{alpha}.sample_visible(w, rng.uniform2());
@@ -82,7 +77,7 @@ void add_batch(Histogram& histogram, double alpha, double eta, Vec3 wo, std::uin
     batch->collide(interface, LightList(), 0);
     const MicrosurfaceBatch::Sent& sent = batch->sent();
     for (std::size_t i = 0; i < sent.size; ++i)
-      walks[sent.slot[i]][bin_of({sent.x[i], sent.y[i], sent.z[i]})] += sent.weight[i];
+      walks[sent.slot[i]][bin_of(sent.direction[i])] += sent.weight[i];
   }
   for (std::size_t i = 0; i < walks.size(); ++i) {
     if (batch->inward_weight(i) > 0) walks[i][bin_of(batch->inward(i))] += batch->inward_weight(i);
@@ -108,9 +103,8 @@ TEST(Microsurface, SendsLightWhereThePlainRandomWalkDoes) {
           // The sampler's stratified numbers would make the walks' errors smaller than told.
           PathSampler sampler(hash_combine(12, i), 0);
           walk = {};
-          cross_microsurface(
-              RoughInterface{1.5, Ggx{alpha}}, eta, wo, sampler, [](const MicroVertex&) {},
-              [&](Vec3 wi, double weight, double) { walk[bin_of(wi)] += weight; });
+          cross_microsurface(RoughInterface{1.5, Ggx{alpha}}, eta, wo, sampler,
+                             [&](Vec3 wi, double weight) { walk[bin_of(wi)] += weight; });
           ours.add(walk);
         }
         while (batched.walks < walks)

@@ -48,11 +48,11 @@ std::vector<std::array<double, 2>> crossings(const S& shape, Vec3 from, Vec3 d) 
   Hit hit;
   double t = 0;
   Vec3 p = from;
-  while (shape.enter(p, d, hit)) {
+  while (shape.intersect_outside(p, d, hit)) {
     EXPECT_LT(dot(hit.n, d), 0);
     const double in = t += hit.t;
     p = hit.p;
-    EXPECT_TRUE(shape.exit(p, d, 1e9, hit));
+    EXPECT_TRUE(shape.intersect_inside(p, d, 1e9, hit));
     EXPECT_GT(dot(hit.n, d), 0);
     t += hit.t;
     p = hit.p;
@@ -107,7 +107,8 @@ TEST(Objects, KnowHowFarTheirSurfaceIsAtLeast) {
             EXPECT_GT(free, 0) << body.name;
             Hit hit;
             for (int i = 0; i < 20; ++i)
-              EXPECT_FALSE(shape.exit(p, sample_isotropic(rng), free * (1 - 1e-12), hit))
+              EXPECT_FALSE(
+                  shape.intersect_inside(p, sample_isotropic(rng), free * (1 - 1e-12), hit))
                   << body.name;
           }
         },
@@ -177,25 +178,6 @@ TEST(LongMeanPathLength, InPlatesBoxesWedgesAndBowlsIsThatOfTheirVolumeToHalfAPe
          {material(1.5, 0, 2), material(1.5, 0.3, 0), material(1.33, 0.2, 5), material(1.5, 0, 30)})
       EXPECT_NEAR(length_over_volume(which, m, 400, 48), 1, 0.005)
           << which.name << " alpha " << m.coefficients.alpha;
-}
-
-/// A plate so wide that it is a slab, lit from this side or from the other.
-Estimate lit_plate(const Material& m, float sigma_a, bool above, std::uint32_t samples) {
-  Scene scene = lit_slab_scene(m, sigma_a, above);
-  scene.shape = make_box({200, 200, 0.5});
-  return image_mean(trace(scene, samples));
-}
-
-TEST(WidePlate, OfMatchedIndexMeetsVanDeHulst) {
-  const Material m = material(1, 0, 90 * 0.02, 0.75);
-  EXPECT_NEAR(lit_plate(m, 10 * 0.02f, true, 128).mean / 0.09739, 1, 2e-2);
-  EXPECT_NEAR(lit_plate(m, 10 * 0.02f, false, 128).mean / 0.66096, 1, 1e-2);
-}
-
-TEST(WidePlate, ClearAndAbsorbingReflectsBetweenItsFaces) {
-  const double f = 0.04, e = std::exp(-0.5);
-  EXPECT_NEAR(lit_plate(material(1.5, 0, 0), 0.5f, false, 64).mean,
-              (1 - f) * (1 - f) * e / (1 - f * f * e * e), 1e-4);
 }
 
 TEST(Box, OfPlanesLooksLikeTheMesh) {

@@ -87,8 +87,12 @@ TEST(OilFilm, LookingForLightDoesNotChangeTheMean) {
   Estimate estimates[2];
   for (const bool looking : {false, true}) {
     Scene scene = oiled(Sphere{}, material(1.5, 0.4, 3), 0.1, 7 + looking);
-    scene.next_event_estimation = looking;
-    estimates[looking] = under_half_a_sky(std::move(scene), 256);
+    if (looking)
+      scene.environment = half_space_light(false);
+    else
+      light_by_a_table(scene);
+    look_from_afar(scene, 0.9, 24, -1);
+    estimates[looking] = image_mean(trace(scene, 256));
   }
   const double error = std::hypot(estimates[0].standard_error, estimates[1].standard_error);
   EXPECT_NEAR(estimates[0].mean, estimates[1].mean, 4 * error);

@@ -10,6 +10,7 @@
 #include "renderer/optics/medium.h"
 #include "renderer/optics/microsurface.h"
 #include "tests/support/chi2.h"
+#include "tests/support/microsurface.h"
 
 namespace translucube::test {
 namespace {
@@ -55,7 +56,7 @@ TEST(Sampling, MicrofacetBranchesFollowTheirDensityOnBothSides) {
             return b.wi;
           };
           const auto pdf = [&](Vec3 wi) {
-            return (wi.z > 0) == reflected ? vertex.evaluate(wi).pdf : 0.0;
+            return (wi.z > 0) == reflected ? single_scattering(ggx, eta, wo, wi).pdf : 0.0;
           };
           Vec3 axis = reflect(wo, {0, 0, 1});
           if (!reflected) axis = refract(wo, {0, 0, 1}, eta).value_or(Vec3{-wo.x, 0, -0.05});
@@ -106,10 +107,7 @@ TEST(Sampling, TheLambertianBackgroundIsCosineDistributed) {
   const InterfacedLambertian base{SmoothInterface{1.5}};
   const auto r =
       chi2_test([&] { return std::optional(InterfacedLambertian::sample(rng.uniform2())); },
-                [&](Vec3 w) {
-                  return base.evaluate({0, 0, 1}, w).pdf;
-                },
-                {0, 0, 1}, 0.1, samples);
+                [&](Vec3 w) { return base.emit(w).pdf; }, {0, 0, 1}, 0.1, samples);
   expect_sampled(r, 1, "lambertian");
 }
 

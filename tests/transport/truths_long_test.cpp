@@ -34,14 +34,14 @@ void expect_truth(const Scene& scene, double expected, const std::string& what) 
   EXPECT_LE(e.standard_error / expected, largest_error) << what;
 }
 
-TEST(LongSlab, OfMatchedIndexMeetsVanDeHulst) {
+TEST(LongWidePlate, OfMatchedIndexMeetsVanDeHulst) {
   const Material m = material(1, 0, 90 * 0.02, 0.75);
   expect_truth(lit_slab_scene(m, 10 * 0.02f, true), 0.09739, "reflectance");
   expect_truth(lit_slab_scene(m, 10 * 0.02f, false), 0.66096, "transmittance");
 }
 
 // 0.2600 has four digits: its rounding of 0.02 % is a tenth of the tolerance.
-TEST(LongSlab, ThickEnoughMeetsGiovanellisHalfSpace) {
+TEST(LongWidePlate, ThickEnoughMeetsGiovanellisHalfSpace) {
   constexpr float depth = 60;  // mean free paths of scattering
   expect_truth(lit_slab_scene(material(1.5, 0, depth), depth / 9, true), 0.2600, "reflectance");
 }

@@ -63,7 +63,7 @@ TEST(MeanPathLength, OfAClearSmoothSphereLeavesOutTheTrappedDirections) {
   }
 }
 
-TEST(Slab, OfMatchedIndexMeetsVanDeHulst) {
+TEST(WidePlate, OfMatchedIndexMeetsVanDeHulst) {
   // sigma_a 10, sigma_s 90, thickness 0.02 (van de Hulst 1980, table 35).
   const LitSlab s = lit_slab(material(1, 0, 90 * 0.02, 0.75), 10 * 0.02f, 1024);
   EXPECT_NEAR(s.reflectance.mean / 0.09739, 1, 5e-3) << s.reflectance.standard_error;
@@ -71,7 +71,7 @@ TEST(Slab, OfMatchedIndexMeetsVanDeHulst) {
   EXPECT_LT(s.reflectance.standard_error / 0.09739, 1.5e-3);
 }
 
-TEST(Slab, ThickEnoughMeetsGiovanellisHalfSpace) {
+TEST(WidePlate, ThickEnoughMeetsGiovanellisHalfSpace) {
   // Albedo 0.9, ior 1.5, normal incidence, with the specular part (Giovanelli 1955).
   constexpr double depth = 60;  // mean free paths of scattering
   const LitSlab s = lit_slab(material(1.5, 0, depth), depth / 9, 128);
@@ -80,7 +80,7 @@ TEST(Slab, ThickEnoughMeetsGiovanellisHalfSpace) {
   EXPECT_LT(s.transmittance.mean, 1e-6);
 }
 
-TEST(Slab, ClearAndAbsorbingReflectsBetweenItsFaces) {
+TEST(WidePlate, ClearAndAbsorbingReflectsBetweenItsFaces) {
   const double f = 0.04, tau = 0.5;
   const LitSlab s = lit_slab(material(1.5, 0, 0), 0.5f, 256);
   const double e = std::exp(-tau), e2 = e * e;

@@ -64,7 +64,7 @@ TEST(Sphere, RollsAsItReflectsChordByChord) {
     Vec3 q = p, e = d;
     Hit hit;
     double left = distance;
-    while (sphere.exit(q, e, left, hit)) {
+    while (sphere.intersect_inside(q, e, left, hit)) {
       left -= hit.t;
       q = hit.p;
       e = reflect(-e, hit.n);

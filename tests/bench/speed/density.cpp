@@ -32,7 +32,7 @@ Tables density(Run& run) {
               table.value(row, noise_of_sample) / table.value("σR 30", noise_of_sample),
               at_most(noise));
     table.add(row, flights, static_cast<double>(pair.counters.flights) / samples);
-    table.add(row, connections, static_cast<double>(pair.counters.connections) / samples);
+    table.add(row, connections, static_cast<double>(pair.counters.light_samples) / samples);
   }
   table.plots.push_back({"density", "Time and error of a sample over the density"});
   return {table};

@@ -47,7 +47,7 @@ void add_work(Table& table, const char* name, const Pair& pair) {
   const auto samples = static_cast<double>(pair.counters.camera_samples);
   table.add(name, flights, static_cast<double>(pair.counters.flights) / samples);
   table.add(name, events, static_cast<double>(pair.counters.boundary_events) / samples);
-  table.add(name, connections, static_cast<double>(pair.counters.connections) / samples);
+  table.add(name, connections, static_cast<double>(pair.counters.light_samples) / samples);
   double mean[3] = {};
   for (const Image* image : {&pair.a, &pair.b})
     for (std::size_t i = 0; i < image->pixels.size(); ++i)

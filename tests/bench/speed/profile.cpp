@@ -141,7 +141,7 @@ Table by_instructions(Run& run) {
               {run.samples(32)}, 1, &counters)[0];
     const auto samples = static_cast<double>(counters.camera_samples);
     const double each =
-        static_cast<double>(counters.flights + counters.boundary_events + counters.connections) /
+        static_cast<double>(counters.flights + counters.boundary_events + counters.light_samples) /
         samples;
     const double time = 1e9 * timed.cpu_seconds / samples;
     if (counted <= 0) {
@@ -224,9 +224,8 @@ Table one_by_one(Run& run) {
   measure("rough boundary event", [&] {
     const Vec3 w = sample_isotropic(rng);
     PathSampler sampler(++sample, 0);
-    cross_microsurface(
-        RoughInterface{1.5, Ggx{0.1}}, 1.5, {w.x, w.y, std::fabs(w.z) + 1e-3}, sampler,
-        [](const MicroVertex&) {}, [](Vec3 wi, double, double) { sink = wi.x; });
+    cross_microsurface(RoughInterface{1.5, Ggx{0.1}}, 1.5, {w.x, w.y, std::fabs(w.z) + 1e-3},
+                       sampler, [](Vec3 wi, double) { sink = wi.x; });
   });
   measure("development by an RGB lane", [&] {
     sink = std::get<RgbLane>(scene->lanes[0]).apply({1, 1, 1}, rng.uniform()).r;
@@ -239,12 +238,8 @@ Table one_by_one(Run& run) {
   };
   auto lookups = std::make_unique<EnvironmentBatch>();
   measure_batch("environment look-up, at random (SIMD)", EnvironmentBatch::capacity, [&] {
-    for (lookups->size = 0; lookups->size < EnvironmentBatch::capacity; ++lookups->size) {
-      const Vec3 d = sample_isotropic(rng);
-      lookups->x[lookups->size] = static_cast<float>(d.x);
-      lookups->y[lookups->size] = static_cast<float>(d.y);
-      lookups->z[lookups->size] = static_cast<float>(d.z);
-    }
+    for (lookups->size = 0; lookups->size < EnvironmentBatch::capacity; ++lookups->size)
+      lookups->direction.set(lookups->size, sample_isotropic(rng));
     lookups->look_up(environment);
     sink = lookups->value[7].pdf;
   });

@@ -1,4 +1,4 @@
-#include "server/worker/worker.h"
+#include "server/worker/worker_pool.h"
 
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>

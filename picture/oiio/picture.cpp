@@ -1,8 +1,8 @@
-// Pictures in the formats that OpenImageIO reads, and as PNG, TIFF and JPEG: the module's table.
+// Pictures in the formats that OpenImageIO reads, and in those of image_format.h that it writes:
+// what the module exports.
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "picture/oiio/codecs.h"
@@ -11,12 +11,6 @@
 
 namespace translucube {
 namespace {
-
-/// A JPEG segment ends at 64 KiB, where libjpeg calls exit(), and OIIO reads a TIFF description
-/// only that far: a longer request is left out of these two. (EXIF and IPTC need some room of it.)
-constexpr std::size_t max_description_bytes = 60000;
-/// Past it libjpeg calls exit() too (JPEG_MAX_DIMENSION).
-constexpr int max_jpeg_side = 65500;
 
 // Of PNG, TIFF and JPEG only "ImageDescription" and "Software" survive in all three. The latter is
 // "Translucube <version>, pixels in <colour space>".
@@ -43,34 +37,13 @@ void linearize(Image& image, const OIIO::ImageSpec& spec) {
   }
 }
 
-int channel_index(const OIIO::ImageSpec& spec, char wanted) {
-  for (int c = 0; c < spec.nchannels; ++c) {
-    const std::string& channel = spec.channelnames[c];
-    if (channel.size() == 1 && std::toupper(static_cast<unsigned char>(channel[0])) == wanted)
-      return c;
-  }
-  return -1;
-}
-
-/// Where R, G and B are stored: three times the first channel for grey, with or without alpha.
-std::array<int, 3> color_channels(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
-  const std::array<int, 3> rgb = {channel_index(spec, 'R'), channel_index(spec, 'G'),
-                                  channel_index(spec, 'B')};
-  if (rgb[0] >= 0 && rgb[1] >= 0 && rgb[2] >= 0) return rgb;
-  if (spec.nchannels <= 2) {
-    const int grey = spec.alpha_channel == 0 && spec.nchannels == 2 ? 1 : 0;
-    return {grey, grey, grey};
-  }
-  fail_image(file, "no channels named R, G and B");
-}
-
 void set_metadata(OIIO::ImageSpec& spec, ImageFormat format, const ImageMetadata& metadata) {
   // Only what is true: no other display of config/display.ocio has a tag in OpenImageIO. Not in
   // TIFF: the tag is EXIF there, and OpenImageIO 2.4 spoils the file with it where it writes
   // through an IOProxy (its pull request 4300).
   if (is_srgb(metadata.colorspace) && format != ImageFormat::tiff)
     spec.attribute("oiio:ColorSpace", "sRGB");
-  const bool room = format == ImageFormat::png || metadata.request.size() <= max_description_bytes;
+  const bool room = metadata.request.size() <= row_of(format).longest_request;
   if (room && !metadata.request.empty())  // an empty one trips an assertion of its IPTC writer
     spec.attribute("ImageDescription", metadata.request);
   spec.attribute("Software", std::string(program) + std::string(project_version()) +
@@ -79,12 +52,22 @@ void set_metadata(OIIO::ImageSpec& spec, ImageFormat format, const ImageMetadata
   spec.attribute("DateTime", "");
 }
 
+OIIO::TypeDesc type_of(int bits) {
+  switch (bits) {
+    case 8:
+      return OIIO::TypeDesc::UINT8;
+    case 16:
+      return OIIO::TypeDesc::UINT16;
+    default:
+      return OIIO::TypeDesc::FLOAT;
+  }
+}
+
 OIIO::ImageSpec output_spec(const Image& image, ImageFormat format, const ImageMetadata& metadata) {
-  const bool bytes =
-      format == ImageFormat::jpeg || (format == ImageFormat::png && metadata.png_bits == 8);
-  OIIO::ImageSpec spec(image.width, image.height, 3,
-                       bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
-  spec.attribute("compression", format == ImageFormat::jpeg ? "jpeg:95" : "zip");
+  const ImageFormatRow& row = row_of(format);
+  const int bits = format == ImageFormat::png ? metadata.png_bits : row.bits;
+  OIIO::ImageSpec spec(image.width, image.height, 3, type_of(bits));
+  spec.attribute("compression", std::string(row.compression));
   spec.attribute("jpeg:subsampling", "4:4:4");
   set_metadata(spec, format, metadata);
   return spec;
@@ -97,7 +80,7 @@ Image read_picture(const std::filesystem::path& file) {
   check_size(file, spec.width, spec.height);
   if (spec.nchannels <= 0) fail_image(file, "has no pixels");
 
-  const std::array<int, 3> channels = color_channels(file, spec);
+  const std::array<int, 3> channels = color_channels(file, spec.channelnames);
   const int first = *std::min_element(channels.begin(), channels.end());
   const int count = *std::max_element(channels.begin(), channels.end()) + 1 - first;
   Image image(spec.width, spec.height);
@@ -123,9 +106,6 @@ ImageMetadata read_picture_metadata(const std::filesystem::path& file) {
 
 void write_picture(const std::filesystem::path& file, const Image& image, ImageFormat format,
                    const ImageMetadata& metadata) {
-  if (format == ImageFormat::jpeg && std::max(image.width, image.height) > max_jpeg_side)
-    fail_image(file, "JPEG cannot be wider or higher than 65500 pixels");
-
   write_image_file(file, format, output_spec(image, format, metadata),
                    [&](OIIO::ImageOutput& output) {
                      return output.write_image(OIIO::TypeDesc::FLOAT, image.pixels.data());

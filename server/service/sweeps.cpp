@@ -2,8 +2,9 @@
 #include "api/request/canonical.h"
 #include "api/request/sweep.h"
 #include "server/pictures/sheet_artifact.h"
-#include "server/service/job_service_parts.h"
-#include "server/store/content.h"
+#include "server/service/answers.h"
+#include "server/service/job_service.h"
+#include "server/store/submission.h"
 
 namespace translucube::server {
 namespace {
@@ -14,40 +15,11 @@ using api::Result;
 
 Problem no_such_sweep() { return {ProblemCode::not_found, "There is no sweep of this id.", {}}; }
 
-Result<api::Sweep> parsed(const std::string& canonical, const api::Catalog& catalog) {
-  return api::parse_sweep_request(canonical, api::without_limits(catalog));
-}
-
-/// The lanes of each traced image. Where the quality says how many samples to take, a point has the
-/// content of the same render alone; else the least absorbing point of its image decides.
-std::vector<std::vector<Picture>> pictures_of(const api::Sweep& sweep,
-                                              const api::Catalog& catalog) {
-  const bool alone = std::holds_alternative<SampleTarget>(sweep.base.quality);
-  std::vector<std::vector<Picture>> images;
-  for (const std::vector<std::size_t>& points : api::traced_images(sweep, catalog.limits)) {
-    std::string first;
-    std::vector<Picture>& lanes = images.emplace_back();
-    for (const std::size_t point : points) {
-      const api::RenderRequest request = api::point_request(sweep, point);
-      const std::string canonical = api::canonical_json(request);
-      lanes.push_back(
-          {static_cast<std::uint32_t>(point), content_key(request, canonical, catalog, first)});
-      if (first.empty() && !alone) first = canonical;
-    }
-  }
-  return images;
-}
-
 Result<api::SweepStatus> status_of(const StoredSweep& stored, const JobStore& store,
                                    const api::Catalog& catalog) {
-  auto sweep = parsed(stored.request, catalog);
+  auto sweep = submitted_sweep(stored.request, catalog);
   if (!sweep) return sweep.problem();
-  api::SweepStatus status;
-  status.id = stored.id;
-  status.state = stored.state;
-  status.created_at = rfc3339(stored.created_ms);
-  if (stored.started_ms) status.started_at = rfc3339(*stored.started_ms);
-  if (stored.finished_ms) status.finished_at = rfc3339(*stored.finished_ms);
+  auto status = status_from<api::SweepStatus>(stored);
   status.sweep = *std::move(sweep);
   for (SweepImageState& image : store.sweep_images(stored.id))
     status.images.push_back({std::move(image.points), image.state, std::move(image.stats),
@@ -66,21 +38,11 @@ Result<std::string> JobService::count_sweep(std::string_view document) const {
 Result<SweepSubmission> JobService::submit_sweep(
     std::string_view document, const std::optional<std::string>& idempotency_key) {
   if (const auto problem = refusal()) return *problem;
-  auto request = api::parse_sweep_request(document, catalog_);
+  const auto request = api::parse_sweep_request(document, catalog_);
   if (!request) return request.problem();
-  const auto& sweep = *request;
-
-  NewSweep job;
-  job.request = api::canonical_json(sweep);
-  job.idempotency_key = idempotency_key;
-  if (const auto* target = std::get_if<SampleTarget>(&sweep.base.quality))
-    job.total_samples = target->samples;
-  const std::uint64_t pixels = std::uint64_t(sweep.base.width) * std::uint64_t(sweep.base.height);
-  job.first_pass = plan_pass(0, pixels, job.total_samples).value();
-  job.images = pictures_of(sweep, catalog_);
-
+  const NewSweep sweep = new_sweep(*request, catalog_, idempotency_key);
   return guarded([&]() -> Result<SweepSubmission> {
-    auto outcome = store_.submit(job);
+    const auto outcome = store_.submit(sweep);
     if (!outcome) return outcome.problem();
     const auto& submitted = *outcome;
     if (submitted.created) workers_->wake();
@@ -113,12 +75,11 @@ Result<SweepPage> JobService::list_sweeps(const ListQuery& query) const {
     std::vector<StoredSweep> sweeps = store_.list_sweeps(*filter);
     SweepPage page;
     page.next_cursor = cut_page(sweeps, query.limit);
-    for (const StoredSweep& sweep : sweeps)
-      page.sweeps.push_back(
-          {sweep.id, sweep.state, rfc3339(sweep.created_ms),
-           sweep.started_ms ? std::optional(rfc3339(*sweep.started_ms)) : std::nullopt,
-           sweep.finished_ms ? std::optional(rfc3339(*sweep.finished_ms)) : std::nullopt,
-           sweep.points, sweep.images});
+    for (const StoredSweep& sweep : sweeps) {
+      page.sweeps.push_back(status_from<api::SweepSummary>(sweep));
+      page.sweeps.back().points = sweep.points;
+      page.sweeps.back().traced_images = sweep.images;
+    }
     return page;
   });
 }
@@ -130,12 +91,9 @@ Result<api::SweepStatus> JobService::cancel_sweep(const std::string& id) {
     const std::optional<StoredSweep> sweep = store_.find_sweep(id);
     if (!sweep) return no_such_sweep();
     if (sweep->state == api::JobState::canceled) {
-      for (const SweepImageState& image : store_.sweep_images(id)) {
-        if (image.state != api::JobState::canceled) continue;
-        workers_->stop_job(image.job_id);
-        discard_files(image.job_id);
-      }
-      changed();
+      for (const SweepImageState& image : store_.sweep_images(id))
+        if (image.state == api::JobState::canceled) stop_work(image.job_id);
+      changes_.tell();
     }
     return status_of(*sweep, store_, catalog_);
   });
@@ -155,13 +113,10 @@ std::optional<Problem> JobService::remove_sweep(const std::string& id) {
   });
   if (!result) return result.problem();
   const auto& [images, unused] = *result;
-  for (const SweepImageState& image : images) {
-    workers_->stop_job(image.job_id);
-    discard_files(image.job_id);
-  }
-  for (const StoredResult& result_of_it : unused) discard_result(result_of_it);
-  discard_files(id);
-  changed();
+  for (const SweepImageState& image : images) stop_work(image.job_id);
+  discard(unused);
+  janitor_.discard(id);
+  changes_.tell();
   return std::nullopt;
 }
 
@@ -174,7 +129,7 @@ Result<ImageFile> JobService::point_image(const std::string& id, const std::stri
     const auto picture = number ? store_.picture_of_point(id, *number) : std::nullopt;
     if (!picture) return Problem{ProblemCode::not_found, "The sweep has no such point.", {}};
     if (auto problem = no_picture(picture->state)) return std::move(*problem);
-    const auto sweep = parsed(stored->request, catalog_);
+    const auto sweep = submitted_sweep(stored->request, catalog_);
     if (!sweep) return sweep.problem();
     return image_artifact(darkroom_, picture->content,
                           api::canonical_json(api::point_request(*sweep, *number)), query);
@@ -186,6 +141,15 @@ Result<ImageFile> JobService::sheet(const std::string& id, const ImageQuery& que
     const auto status = get_sweep(id);
     if (!status) return status.problem();
     return sheet_artifact(darkroom_, *status, query);
+  });
+}
+
+Result<JobService::Events> JobService::events_of_sweep(const std::string& id,
+                                                       std::uint64_t after) const {
+  return guarded([&]() -> Result<Events> {
+    const std::optional<StoredSweep> sweep = store_.find_sweep(id);
+    if (!sweep) return no_such_sweep();
+    return Events{store_.events_after(id, after), api::is_end(sweep->state)};
   });
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Where on the body's surface the light went in that the dipole sends out at a point: a sample of
-// the surface in proportion to R_d of the distance, as far as the shape allows, without bias.
+// Samples the point of the surface where light came in that the dipole sends out elsewhere: in
+// proportion to R_d of the distance, as far as the shape allows, without bias.
 
 #include <cmath>
 #include <limits>
@@ -13,7 +13,7 @@
 
 namespace translucube {
 
-struct DipoleExit {
+struct IncidentPoint {
   Vec3 p, n;          ///< on the surface, its outward normal
   double r = 0;       ///< straight distance from the first point
   double weight = 0;  ///< R_d(r) of the clear body over the density of p per area; 0: there is none
@@ -22,8 +22,8 @@ struct DipoleExit {
 
 /// On the unit sphere the area within a chord r is that of the flat disc (Archimedes): the radius
 /// of the plane is the chord, and the density is R_d / mass exactly.
-inline DipoleExit sample_exit(const Sphere&, const DipoleRadii& dipole, Vec3, Vec3 n, Sample2 u,
-                              Rng&) {
+inline IncidentPoint sample_incident_point(const Sphere&, const DipoleRadii& dipole, Vec3, Vec3 n,
+                                           Sample2 u, Rng&) {
   const double r = dipole.sample(u.u), phi = 2 * std::numbers::pi * u.v;
   const double sine = r * std::sqrt(std::fmax(0.0, 1 - r * r / 4)), cosine = 1 - r * r / 2;
   const Frame frame(n);
@@ -37,8 +37,8 @@ inline DipoleExit sample_exit(const Sphere&, const DipoleRadii& dipole, Vec3, Ve
 /// bounded. One of the points on the line stands for all (a reservoir of one, in proportion to
 /// their weights).
 template <class Shape>
-DipoleExit sample_exit(const Shape& shape, const DipoleRadii& dipole, Vec3 origin, Vec3 n,
-                       Sample2 u, Rng& rng) {
+IncidentPoint sample_incident_point(const Shape& shape, const DipoleRadii& dipole, Vec3 origin,
+                                    Vec3 n, Sample2 u, Rng& rng) {
   constexpr int most_crossings = 1024;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr double along_normal = 0.5, along_tangent = 0.25;
@@ -58,7 +58,7 @@ DipoleExit sample_exit(const Shape& shape, const DipoleRadii& dipole, Vec3 origi
     const double projected = length(from_origin - dot(from_origin, a) * a);
     return dipole.reflectance(projected) / dipole.mass() * std::fabs(dot(normal, a));
   };
-  DipoleExit chosen;
+  IncidentPoint chosen;
   double total = 0;
   const auto offer = [&](const Hit& hit) {
     const Vec3 from_origin = hit.p - origin;
@@ -79,10 +79,10 @@ DipoleExit sample_exit(const Shape& shape, const DipoleRadii& dipole, Vec3 origi
   Vec3 p = on_disc - 4.0 * axis;
   Hit hit;
   int crossings = 0;
-  while (shape.enter(p, axis, hit)) {
+  while (shape.intersect_outside(p, axis, hit)) {
     offer(hit);
     p = hit.p;
-    if (!shape.exit(p, axis, infinity, hit)) break;
+    if (!shape.intersect_inside(p, axis, infinity, hit)) break;
     offer(hit);
     p = hit.p;
     if (++crossings == most_crossings) {

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/worker/render_task.h"
+#include "server/worker/task_runner.h"
 
 namespace translucube::server {
 

@@ -1,6 +1,4 @@
-// Pictures as EXR: R, G and B with their metadata.
-
-#include "picture/exr/exr.h"
+#include "picture/exr/picture.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -8,33 +6,14 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <array>
-#include <cctype>
+#include <fstream>
 #include <optional>
 #include <vector>
 
-#include "picture/image_io_rules.h"
+#include "picture/exr/file.h"
 
 namespace translucube {
 namespace {
-
-/// The names of R, G and B: three times the one of grey, with or without alpha.
-std::array<std::string, 3> color_channels(const std::filesystem::path& file,
-                                          const Imf::ChannelList& channels) {
-  std::array<std::string, 3> rgb;
-  std::vector<std::string> names;
-  for (auto it = channels.begin(); it != channels.end(); ++it) {
-    const std::string name = names.emplace_back(it.name());
-    const auto color = std::string_view("RGB").find(
-        static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))));
-    if (name.size() == 1 && color != std::string_view::npos) rgb[color] = name;
-  }
-  if (!rgb[0].empty() && !rgb[1].empty() && !rgb[2].empty()) return rgb;
-  if (names.size() == 1 || names.size() == 2) {
-    const std::string& grey = names[0] == "A" ? names.back() : names[0];
-    return {grey, grey, grey};
-  }
-  fail_image(file, "no channels named R, G and B");
-}
 
 Imf::Slice float_slice(const Image& image, const Imath::Box2i& window, int channel) {
   constexpr std::size_t pixel = 3 * sizeof(float);
@@ -61,19 +40,30 @@ ImageMetadata metadata_of(const Imf::Header& header) {
 
 }  // namespace
 
+bool is_exr(const std::filesystem::path& file) {
+  constexpr std::array<char, 4> magic = {0x76, 0x2f, 0x31, 0x01};
+  std::array<char, 4> start{};
+  std::ifstream in(file, std::ios::binary);
+  return in.read(start.data(), start.size()) && start == magic;
+}
+
 Image read_exr(const std::filesystem::path& file) {
   Image image;
   ImageMetadata metadata;
   read_exr_file(file, [&](Imf::InputFile& input) {
     const Imf::Header& header = input.header();
     const Imath::Box2i& window = header.dataWindow();
-    const std::array<std::string, 3> channels = color_channels(file, header.channels());
+    std::vector<std::string> names;
+    for (auto it = header.channels().begin(); it != header.channels().end(); ++it)
+      names.emplace_back(it.name());
+    const std::array<int, 3> channels = color_channels(file, names);
     image = Image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
     Imf::FrameBuffer pixels;
     for (int c = 0; c < 3; ++c) {
-      if (header.channels()[channels[c].c_str()].type == Imf::UINT)
+      const std::string& name = names[channels[c]];
+      if (header.channels()[name.c_str()].type == Imf::UINT)
         fail_image(file, "its channels are integers, not light");
-      pixels.insert(channels[c], float_slice(image, window, c));
+      pixels.insert(name, float_slice(image, window, c));
     }
     input.setFrameBuffer(pixels);
     input.readPixels(window.min.y, window.max.y);

@@ -1,7 +1,6 @@
 #pragma once
 
-// EXR files through OpenEXR itself, for image_io*.cpp alone: environments and films are EXR, and no
-// picture waits for more libraries than that.
+// EXR files as OpenEXR opens and writes them, for the files of this folder alone.
 
 #include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfHeader.h>
@@ -12,18 +11,9 @@
 #include <functional>
 #include <string>
 
-#include "picture/image_io.h"
+#include "picture/image_io_rules.h"
 
 namespace translucube {
-
-/// By its first bytes; false for what cannot be read.
-bool is_exr(const std::filesystem::path& file);
-
-// As in image_io.h, but for the checks of file and pixels.
-Image read_exr(const std::filesystem::path& file);
-ImageMetadata read_exr_metadata(const std::filesystem::path& file);
-void write_exr(const std::filesystem::path& file, const Image& image,
-               const ImageMetadata& metadata);
 
 /// Reads with `read`, which gets the open file; for the first part where there are several. Throws
 /// ImageError, also for deep images, subsampled channels and sizes that check_size() refuses.

@@ -1,4 +1,4 @@
-// Images of half floats in many channels.
+#include "picture/half_image.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "picture/exr/exr.h"
-#include "picture/image_io_rules.h"
+#include "picture/exr/file.h"
+#include "picture/exr/picture.h"
 
 namespace translucube {
 namespace {

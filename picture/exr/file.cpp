@@ -1,34 +1,23 @@
+#include "picture/exr/file.h"
+
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
-#include <fcntl.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
 #include <cstring>
-#include <fstream>
 
-#include "picture/exr/exr.h"
-#include "picture/image_io_rules.h"
+#include "picture/output_file.h"
 #include "picture/version.h"
 
 namespace translucube {
 namespace {
 
-/// Writes to a file through a small buffer and remembers the first error: OpenEXR writes its last
-/// bytes in a destructor, which tells nobody. finish() does.
-class FileSink final : public Imf::OStream {
+/// Gathers what OpenEXR writes in a small buffer.
+class BufferedFile final : public Imf::OStream {
  public:
-  explicit FileSink(const std::filesystem::path& file)
-      : OStream(file.c_str()),
-        descriptor_(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) error_number_ = errno;
-  }
-  ~FileSink() override { finish(); }
-  FileSink(const FileSink&) = delete;
-  FileSink& operator=(const FileSink&) = delete;
+  BufferedFile(const std::filesystem::path& name, OutputFile& file)
+      : OStream(name.c_str()), file_(file) {}
 
   void write(const char bytes[], int count) override {
     buffer_.append(bytes, static_cast<std::size_t>(count));
@@ -39,35 +28,18 @@ class FileSink final : public Imf::OStream {
     flush();
     start_ = position;
   }
-
-  /// 0 if every byte was handed to the system, else the errno of the first failure.
-  int finish() {
-    flush();
-    if (descriptor_ >= 0 && ::close(descriptor_) != 0 && error_number_ == 0) error_number_ = errno;
-    descriptor_ = -1;
-    return error_number_;
+  void flush() {
+    file_.write(buffer_.data(), buffer_.size(), static_cast<std::int64_t>(start_));
+    start_ += buffer_.size();
+    buffer_.clear();
   }
 
  private:
   static constexpr std::size_t most_buffered = 1 << 16;
 
-  void flush() {
-    for (std::size_t done = 0; error_number_ == 0 && done < buffer_.size();) {
-      const ssize_t put = ::pwrite(descriptor_, buffer_.data() + done, buffer_.size() - done,
-                                   static_cast<off_t>(start_ + done));
-      if (put > 0)
-        done += static_cast<std::size_t>(put);
-      else if (errno != EINTR)
-        error_number_ = put < 0 ? errno : EIO;
-    }
-    start_ += buffer_.size();
-    buffer_.clear();
-  }
-
-  int descriptor_;
+  OutputFile& file_;
   std::uint64_t start_ = 0;  ///< of the buffer in the file
   std::string buffer_;
-  int error_number_ = 0;
 };
 
 void check_header(const std::filesystem::path& file, const Imf::Header& header) {
@@ -82,13 +54,6 @@ void check_header(const std::filesystem::path& file, const Imf::Header& header) 
 }
 
 }  // namespace
-
-bool is_exr(const std::filesystem::path& file) {
-  constexpr std::array<char, 4> magic = {0x76, 0x2f, 0x31, 0x01};
-  std::array<char, 4> start{};
-  std::ifstream in(file, std::ios::binary);
-  return in.read(start.data(), start.size()) && start == magic;
-}
 
 void read_exr_file(const std::filesystem::path& file,
                    const std::function<void(Imf::InputFile&)>& read) {
@@ -115,11 +80,15 @@ Imf::Header exr_header(int width, int height, Imf::Compression compression) {
 
 void write_exr_file(const std::filesystem::path& file, const Imf::Header& header,
                     const std::function<void(Imf::OutputFile&)>& write) {
-  FileSink sink(file);
+  OutputFile sink(file);
+  BufferedFile stream(file, sink);
   std::string problem;
   try {
-    Imf::OutputFile output(sink, header, 0);
-    write(output);
+    {
+      Imf::OutputFile output(stream, header, 0);
+      write(output);
+    }
+    stream.flush();
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

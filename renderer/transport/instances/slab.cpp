@@ -1,4 +1,0 @@
-#include "renderer/transport/tracer.h"
-
-template void translucube::trace_body(const Slab&, const Scene&, const SampleRange&, Tile&,
-                                      std::string*);
