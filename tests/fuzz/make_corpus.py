@@ -63,8 +63,9 @@ def write(name, seeds):
         (folder / f"seed-{number:03}").write_bytes(seed)
 
 
+lines = [json.loads(line) for line in (root / "tests/api/malformed.jsonl").open()]
+bodies = [bytes.fromhex(line["hex"]) if "hex" in line else line["body"].encode() for line in lines]
 # Of the bodies that are far too long, the shorter ones do.
-bodies = [path.read_bytes() for path in sorted((root / "tests/api/malformed").glob("*.json"))]
 bodies = [body for body in bodies if len(body) < 4096]
 as_bytes = lambda documents: [json.dumps(d, separators=(",", ":")).encode() for d in documents]
 shutil.rmtree(out, ignore_errors=True)

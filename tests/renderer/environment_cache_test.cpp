@@ -5,8 +5,6 @@
 
 #include <filesystem>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "picture/image_io.h"
 #include "renderer/render.h"
@@ -63,18 +61,6 @@ TEST_F(EnvironmentCacheTest, ForgetsTheOldestWhereTheyWouldTakeTooMuch) {
 
 TEST_F(EnvironmentCacheTest, SaysWhyAnImageCannotBeRead) {
   EXPECT_THROW(cache_.get(folder_ / "absent.exr", 0, 1), ImageError);
-}
-
-TEST_F(EnvironmentCacheTest, ServesThreadsAtOnce) {
-  const fs::path a = write("a.exr", 2), b = write("b.exr", 3);
-  std::vector<std::jthread> threads;
-  for (int i = 0; i < 4; ++i)
-    threads.emplace_back([&] {
-      for (int j = 0; j < 20; ++j) {
-        EXPECT_EQ(cache_.get(a, 0.1 * (j % 3), 1)->value_from({0, 1, 0}).radiance.g, 2);
-        EXPECT_EQ(cache_.get(b, 0, 1)->value_from({0, 1, 0}).radiance.g, 3);
-      }
-    });
 }
 
 TEST_F(EnvironmentCacheTest, ChangesNoPicture) {

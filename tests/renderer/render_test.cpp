@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <thread>
 
 #include "renderer/film/film_bytes.h"
 #include "tests/support/scenes.h"
@@ -36,14 +35,6 @@ TEST(Passes, OfAnOpenEndedRenderAreThoseOfAFixedOne) {
   }
 }
 
-TEST(Render, GivesTheSameBitsForAnyNumberOfThreads) {
-  const Scene scene = half_lit_sphere();
-  const Film one = trace(scene, 19, 1), two = trace(scene, 19, 2), five = trace(scene, 19, 5);
-  EXPECT_EQ(one.sum, two.sum);
-  EXPECT_EQ(one.m2, two.m2);
-  EXPECT_EQ(one.sum, five.sum);
-}
-
 TEST(Render, OfAnotherSeedIsAnotherPicture) {
   Scene scene = half_lit_sphere();
   const Film first = trace(scene, 4);
@@ -63,18 +54,6 @@ TEST(Render, ContinuesFromAFilmReadBackWithTheSameBits) {
   EXPECT_EQ(film.sum, whole.sum);
   EXPECT_EQ(film.m2, whole.m2);
   EXPECT_EQ(film.counters.flights, whole.counters.flights);
-}
-
-TEST(Render, StopsWhenAskedTo) {
-  const Scene scene = half_lit_sphere();
-  std::stop_source stop;
-  const RenderResult result =
-      render(scene, SampleTarget{1u << 20}, 2, stop.get_token(), [&](const Progress& p) {
-        if (p.passes == 3) stop.request_stop();
-      });
-  EXPECT_TRUE(result.stopped);
-  EXPECT_EQ(result.film.passes, 3u);
-  EXPECT_EQ(result.film.sum, trace(scene, result.film.samples).sum);
 }
 
 TEST(Render, KeepsToItsTime) {

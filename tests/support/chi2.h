@@ -29,52 +29,53 @@ inline double chi2_p_value(double statistic, int degrees) {
   return 0.5 * std::erfc(z / std::numbers::sqrt2);
 }
 
-/// `draw` gives a direction or nothing; `pdf` is per solid angle and integrates to the share of
-/// samples that are not nothing.
-inline Chi2Result chi2_test(const std::function<std::optional<Vec3>()>& draw,
-                            const std::function<double(Vec3)>& pdf, Vec3 axis, double width,
-                            int samples) {
-  constexpr int rings = 24, sectors = 12, fine = 64;
-  const Frame frame(normalize(axis));
-  std::vector<double> edges{0};
-  for (int i = 0; i < rings; ++i)
-    edges.push_back(std::numbers::pi * std::pow(width / std::numbers::pi, 1 - (i + 1.0) / rings));
-  std::vector<double> seen(rings * sectors, 0), expected(rings * sectors, 0);
-  for (int s = 0; s < samples; ++s) {
-    const std::optional<Vec3> direction = draw();
-    if (!direction) continue;
-    const Vec3 w = frame.to_local(*direction);
-    const double theta = std::atan2(std::hypot(w.x, w.y), w.z);
-    const double phi = std::atan2(w.y, w.x) + std::numbers::pi;
-    const auto ring =
-        std::upper_bound(edges.begin() + 1, edges.end() - 1, theta) - edges.begin() - 1;
-    const int sector =
-        std::min(sectors - 1, static_cast<int>(phi / (2 * std::numbers::pi) * sectors));
-    seen[ring * sectors + sector] += 1;
+/// Bins about an axis: rings of polar angle, in geometric progression down to about `width`, each of
+/// several sectors of azimuth.
+class PolarBins {
+ public:
+  static constexpr int rings = 24, sectors = 12, count = rings * sectors;
+
+  PolarBins(Vec3 axis, double width) : frame_(normalize(axis)) {
+    for (int i = 0; i < rings; ++i)
+      edges_.push_back(pi * std::pow(width / pi, 1 - (i + 1.0) / rings));
   }
-  Chi2Result result;
-  for (int ring = 0; ring < rings; ++ring)
-    for (int sector = 0; sector < sectors; ++sector) {
-      double sum = 0;
-      for (int i = 0; i < fine; ++i) {
-        // Midpoints in theta; the solid angle of each strip is exact.
-        const double a = edges[ring] + (edges[ring + 1] - edges[ring]) * i / fine;
-        const double b = edges[ring] + (edges[ring + 1] - edges[ring]) * (i + 1) / fine;
-        const double solid = 2 * std::sin((a + b) / 2) * std::sin((b - a) / 2) * 2 *
-                             std::numbers::pi / (sectors * fine);
-        for (int j = 0; j < fine; ++j) {
-          const double theta = (a + b) / 2;
-          const double phi =
-              2 * std::numbers::pi * (sector + (j + 0.5) / fine) / sectors - std::numbers::pi;
-          sum += solid * pdf(frame.to_world({std::sin(theta) * std::cos(phi),
-                                             std::sin(theta) * std::sin(phi), std::cos(theta)}));
-        }
+
+  int bin_of(Vec3 direction) const {
+    const Vec3 w = frame_.to_local(direction);
+    const double theta = std::atan2(std::hypot(w.x, w.y), w.z);
+    const double phi = std::atan2(w.y, w.x) + pi;
+    const auto ring =
+        std::upper_bound(edges_.begin() + 1, edges_.end() - 1, theta) - edges_.begin() - 1;
+    const int sector = std::min(sectors - 1, static_cast<int>(phi / (2 * pi) * sectors));
+    return static_cast<int>(ring) * sectors + sector;
+  }
+
+  /// By midpoints; the solid angle of each strip in theta is exact.
+  double integral(const std::function<double(Vec3)>& pdf, int bin) const {
+    constexpr int fine = 64;
+    const double low = edges_[bin / sectors], step = (edges_[bin / sectors + 1] - low) / fine;
+    double sum = 0;
+    for (int i = 0; i < fine; ++i) {
+      const double theta = low + (i + 0.5) * step;
+      const double solid = 2 * std::sin(theta) * std::sin(step / 2) * 2 * pi / (sectors * fine);
+      for (int j = 0; j < fine; ++j) {
+        const double phi = 2 * pi * (bin % sectors + (j + 0.5) / fine) / sectors - pi;
+        sum += solid * pdf(frame_.to_world({std::sin(theta) * std::cos(phi),
+                                            std::sin(theta) * std::sin(phi), std::cos(theta)}));
       }
-      expected[ring * sectors + sector] = sum * samples;
-      result.total_pdf += sum;
-      result.total_seen += seen[ring * sectors + sector] / samples;
     }
-  // Bins too empty for the statistic are pooled (Cochran 1954).
+    return sum;
+  }
+
+ private:
+  static constexpr double pi = std::numbers::pi;
+  Frame frame_;
+  std::vector<double> edges_{0};
+};
+
+/// Pearson's statistic; bins too empty for it are pooled (Cochran 1954).
+inline void compare_counts(Chi2Result& result, const std::vector<double>& seen,
+                           const std::vector<double>& expected) {
   double pooled_seen = 0, pooled_expected = 0;
   const auto add = [&](double o, double e) {
     result.statistic += (o - e) * (o - e) / e;
@@ -93,6 +94,27 @@ inline Chi2Result chi2_test(const std::function<std::optional<Vec3>()>& draw,
   if (pooled_expected < 5 && pooled_seen > 40) result.statistic += 1e9;
   result.degrees = std::max(1, result.degrees - 1);
   result.p_value = chi2_p_value(result.statistic, result.degrees);
+}
+
+/// `draw` gives a direction or nothing; `pdf` is per solid angle and integrates to the share of
+/// samples that are not nothing.
+inline Chi2Result chi2_test(const std::function<std::optional<Vec3>()>& draw,
+                            const std::function<double(Vec3)>& pdf, Vec3 axis, double width,
+                            int samples) {
+  const PolarBins bins(axis, width);
+  std::vector<double> seen(PolarBins::count, 0), expected(PolarBins::count, 0);
+  Chi2Result result;
+  for (int s = 0; s < samples; ++s)
+    if (const std::optional<Vec3> direction = draw()) {
+      ++seen[bins.bin_of(*direction)];
+      result.total_seen += 1.0 / samples;
+    }
+  for (int bin = 0; bin < PolarBins::count; ++bin) {
+    const double share = bins.integral(pdf, bin);
+    expected[bin] = share * samples;
+    result.total_pdf += share;
+  }
+  compare_counts(result, seen, expected);
   return result;
 }
 

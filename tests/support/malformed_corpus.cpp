@@ -1,10 +1,7 @@
 #include "tests/support/malformed_corpus.h"
 
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 
 #include "tests/support/repository.h"
@@ -15,10 +12,11 @@ namespace {
 constexpr std::size_t million = 1'000'000;
 constexpr std::size_t mebibyte = 1 << 20;  // limits.body_bytes
 
-std::string file_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error("cannot read " + file.string());
-  return {std::istreambuf_iterator<char>(stream), {}};
+std::string bytes_of_hex(const std::string& hex) {
+  std::string bytes;
+  for (std::size_t i = 0; i < hex.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+  return bytes;
 }
 
 std::string repeated(const std::string& piece, std::size_t times) {
@@ -75,21 +73,18 @@ void add_generated(std::vector<MalformedBody>& bodies) {
 }  // namespace
 
 std::vector<MalformedBody> malformed_bodies() {
-  const std::filesystem::path folder = in_repository("tests/api/malformed");
-  std::istringstream index(file_text(folder / "index.txt"));
+  const std::filesystem::path file = in_repository("tests/api/malformed.jsonl");
+  std::ifstream stream(file);
   std::vector<MalformedBody> bodies;
-  for (std::string line; std::getline(index, line);) {
-    if (line.empty() || line.starts_with('#')) continue;
-    std::istringstream fields(line);
-    MalformedBody body;
-    std::string pointer;
-    if (!(fields >> body.name >> body.status))
-      throw std::runtime_error("bad line in the malformed corpus: " + line);
-    if (std::getline(fields >> std::ws, pointer))
-      body.pointer = nlohmann::json::parse(pointer).get<std::string>();
-    body.text = file_text(folder / body.name);
-    bodies.push_back(std::move(body));
+  for (std::string line; std::getline(stream, line);) {
+    const auto entry = nlohmann::json::parse(line);
+    const int status = entry.at("status");
+    const bool several = entry.value("several_faults", false);
+    bodies.push_back({entry.at("name"),
+                      entry.contains("hex") ? bytes_of_hex(entry["hex"]) : entry.at("body"), status,
+                      entry.value("pointer", ""), status == 422 && !several, several});
   }
+  if (bodies.empty()) throw std::runtime_error("cannot read " + file.string());
   add_generated(bodies);
   return bodies;
 }

@@ -144,19 +144,6 @@ TEST(StandardErrors, CoverTheTruth) {
   }
 }
 
-TEST(Bits, DoNotDependOnTheNumberOfThreads) {
-  Material m = plate(1.5, 0.2, 5, 0.3);
-  m.absorber = ramp();
-  const SlabAppearance one = slab_appearance(m, 1, 2e-3, 5, 1);
-  const SlabAppearance three = slab_appearance(m, 1, 2e-3, 5, 3);
-  const SlabAppearance other = slab_appearance(m, 1, 2e-3, 6, 3);
-  EXPECT_EQ(one.normal.value.reflected.total, three.normal.value.reflected.total);
-  EXPECT_EQ(one.diffuse.value.transmitted.bands, three.diffuse.value.transmitted.bands);
-  EXPECT_EQ(one.haze->value, three.haze->value);
-  EXPECT_EQ(one.samples, three.samples);
-  EXPECT_NE(one.normal.value.reflected.total, other.normal.value.reflected.total);
-}
-
 double cpu_seconds() {
   timespec t;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);

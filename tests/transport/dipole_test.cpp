@@ -249,13 +249,6 @@ TEST(DipoleModel, IsFiniteAtAnyDensityAndIndex) {
       }
 }
 
-TEST(DipoleModel, GivesTheSameBitsForAnyNumberOfThreads) {
-  const SceneSpec spec = sphere_spec(0.4, 0.3, 0.4);
-  const Film one = traced(spec, 12, 1);
-  EXPECT_EQ(one.sum, traced(spec, 12, 2).sum);
-  EXPECT_EQ(one.sum, traced(spec, 12, 5).sum);
-}
-
 TEST(DipoleModel, LanesAreTheRendersOfTheirAbsorbers) {
   SceneSpec spec = sphere_spec(0.4, 0.2, 0.3);
   const Absorption more{RgbAbsorber{{1, 0.3, 0.1}}, 0.2};

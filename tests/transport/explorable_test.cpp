@@ -156,18 +156,6 @@ TEST(ExplorableFilm, OfABlackMaterialStillServesTheOtherAbsorbers) {
     ASSERT_NEAR(developed.pixels[i], clear.pixels[i], 1e-3 * clear.pixels[i]);
 }
 
-TEST(ExplorableFilm, HasTheSameBitsForAnyNumberOfThreads) {
-  SceneSpec spec = sphere(0.3, 0.5);
-  spec.width = 300;
-  spec.height = 200;
-  spec.explorable = Explorable{3.7};
-  const auto scene = build_scene(spec);
-  const ExplorableFilm film = explorable_film(*scene, render(*scene, SampleTarget{1}).film);
-  const Image one = develop_explorable(film, narrow_band(), 0.05, 1);
-  EXPECT_EQ(develop_explorable(film, narrow_band(), 0.05, 2).pixels, one.pixels);
-  EXPECT_EQ(develop_explorable(film, narrow_band(), 0.05, 7).pixels, one.pixels);
-}
-
 TEST(ExplorableFilm, CountsLightThatIsNotFinite) {
   Scene scene = test::body(Sphere{}, test::material(1.5, 0, 0));
   scene.environment = UniformEnvironment{Rgb{std::numeric_limits<float>::infinity(), 1, 1}};

@@ -29,8 +29,7 @@ Table dipole(Run& run) {
       "energy is kept; between s = 0 and 1 the model does not, and no figure here is held to "
       "it. Luminance: mean over the image, over that of exact transport. relMSE: mean (x - "
       "ref)^2 / (ref^2 + 0.01) against exact transport, with the noise of both images taken "
-      "off, so that it may come out below 0.",
-      Table::Layout::columns};
+      "off, so that it may come out below 0."};
   for (const double s : {0.0, 0.01, 0.05, 0.1, 0.25, 0.4, 0.6, 0.8, 0.9, 0.99, 0.999, 1.0}) {
     const std::string row = text("s %g", s);
     const auto rendered = [&](bool model, bool furnace) {

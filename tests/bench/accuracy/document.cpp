@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "tests/bench/report/markdown.h"
-
 namespace translucube::accuracy {
 namespace {
 
@@ -18,6 +16,9 @@ std::string with_error(const Estimate& e) {
       std::clamp(1 - static_cast<int>(std::floor(std::log10(e.standard_error))), 0, 7);
   return text("%.*f ± %.*f", decimals, e.mean, decimals, e.standard_error);
 }
+
+/// Whether it has a figure to the row instead of a column for each quantity.
+bool is_list(const Table& table) { return table.figures.front().column.empty(); }
 
 std::string list(const Table& table) {
   std::string out =
@@ -98,12 +99,8 @@ std::string markdown(const Report& report) {
       "r², s for d_ref = half the radius), alpha, sigma_s and sigma_a the coefficients. All "
       "numbers "
       "are in [accuracy.json](accuracy.json).\n";
-  for (const Table& table : report.tables) {
-    out += "\n## " + table.title + "\n\n" + table.text + "\n\n";
-    out += table.layout == Table::Layout::list ? list(table) : columns(table, false);
-    for (const Plot& plot : table.plots)
-      out += "\n![" + plot.caption + "](plots/" + plot.name + ".svg)\n";
-  }
+  for (const Table& table : report.tables)
+    out += bench::section(table, is_list(table) ? list(table) : columns(table, false), "plots");
   std::string times;
   for (const Table& table : report.tables)
     if (std::ranges::count(table.figures, true, &Figure::soft))

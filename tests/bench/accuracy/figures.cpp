@@ -1,9 +1,9 @@
 #include "tests/bench/accuracy/figures.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "renderer/base/sampler.h"
+#include "tests/bench/report/json.h"
 #include "tests/support/chi2.h"
 
 namespace translucube::accuracy {
@@ -22,12 +22,6 @@ bool held(const Figure& figure, double threshold) {
 }
 
 }  // namespace
-
-const Figure* Table::find(const std::string& row, const std::string& column) const {
-  for (const Figure& figure : figures)
-    if (figure.row == row && figure.column == column) return &figure;
-  return nullptr;
-}
 
 std::uint32_t Run::samples(std::uint32_t at_full_effort) const {
   return 4 * std::max(4u, static_cast<std::uint32_t>(at_full_effort * effort_ / 4));
@@ -90,52 +84,33 @@ Verdict judge(const Report& report) {
 }
 
 nlohmann::json to_json(const Report& report) {
-  nlohmann::json tables = nlohmann::json::array();
-  for (const Table& table : report.tables) {
-    nlohmann::json figures = nlohmann::json::array();
-    for (const Figure& figure : table.figures) {
-      nlohmann::json entry{{"row", figure.row},
-                           {"measured", figure.measured.mean},
-                           {"standard_error", figure.measured.standard_error}};
-      if (!figure.column.empty()) entry["column"] = figure.column;
-      if (figure.soft) entry["soft"] = true;
-      if (figure.truth)
-        entry["truth"] = {{"value", figure.truth->value},
-                          {"standard_error", figure.truth->error},
-                          {"tolerance", figure.truth->tolerance},
-                          {"source", figure.truth->source}};
-      if (const std::optional<double> z = z_of(figure)) entry["z"] = *z;
-      figures.push_back(std::move(entry));
-    }
-    tables.push_back({{"id", table.id}, {"title", table.title}, {"figures", std::move(figures)}});
-  }
-  return {{"effort", report.effort},
-          {"seed", report.seed},
-          {"cpu_seconds", report.cpu_seconds},
-          {"tables", std::move(tables)}};
+  return bench::to_json(report, [](const Figure& figure) {
+    nlohmann::json entry{{"row", figure.row},
+                         {"measured", figure.measured.mean},
+                         {"standard_error", figure.measured.standard_error}};
+    if (!figure.column.empty()) entry["column"] = figure.column;
+    if (figure.soft) entry["soft"] = true;
+    if (figure.truth)
+      entry["truth"] = {{"value", figure.truth->value},
+                        {"standard_error", figure.truth->error},
+                        {"tolerance", figure.truth->tolerance},
+                        {"source", figure.truth->source}};
+    if (const std::optional<double> z = z_of(figure)) entry["z"] = *z;
+    return entry;
+  });
 }
 
 Report report_from_json(const nlohmann::json& json) {
-  Report report;
-  report.effort = json.at("effort");
-  report.seed = json.at("seed");
-  for (const nlohmann::json& t : json.at("tables")) {
-    Table table;
-    table.id = t.at("id");
-    table.title = t.at("title");
-    for (const nlohmann::json& f : t.at("figures")) {
-      Figure figure{f.at("row"), f.value("column", ""), {f.at("measured"), f.at("standard_error")}};
-      figure.soft = f.value("soft", false);
-      if (f.contains("truth")) {
-        const nlohmann::json& truth = f["truth"];
-        figure.truth = Truth{truth.at("value"), truth.at("standard_error"), truth.at("tolerance"),
-                             truth.at("source")};
-      }
-      table.figures.push_back(std::move(figure));
+  return bench::report_from_json<Table>(json, [](const nlohmann::json& f) {
+    Figure figure{f.at("row"), f.value("column", ""), {f.at("measured"), f.at("standard_error")}};
+    figure.soft = f.value("soft", false);
+    if (f.contains("truth")) {
+      const nlohmann::json& truth = f["truth"];
+      figure.truth = Truth{truth.at("value"), truth.at("standard_error"), truth.at("tolerance"),
+                           truth.at("source")};
     }
-    report.tables.push_back(std::move(table));
-  }
-  return report;
+    return figure;
+  });
 }
 
 std::vector<std::string> compare(const Report& fresh, const Report& committed) {

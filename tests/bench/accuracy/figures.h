@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/report/table.h"
 #include "tests/bench/report/text.h"
 #include "tests/support/scenes.h"
 
@@ -33,17 +34,7 @@ struct Figure {
   bool soft = false;  ///< a time: it depends on the machine
 };
 
-struct Plot {
-  std::string name, caption;
-};
-
-struct Table {
-  enum class Layout { list, columns };  ///< a figure to the row, or a column for each quantity
-  std::string id, title, text;
-  Layout layout = Layout::list;
-  std::vector<Figure> figures = {};
-  std::vector<Plot> plots = {};
-
+struct Table : bench::Table<Figure> {
   void add(std::string row, Estimate measured, Truth truth) {
     figures.push_back({std::move(row), "", measured, std::move(truth)});
   }
@@ -54,14 +45,9 @@ struct Table {
   void add_time(std::string row, std::string column, double value) {
     figures.push_back({std::move(row), std::move(column), {value, 0}, {}, true});
   }
-  const Figure* find(const std::string& row, const std::string& column) const;
 };
 
-struct Report {
-  std::vector<Table> tables;
-  double effort = 1, cpu_seconds = 0;
-  std::uint64_t seed = 1;
-};
+using Report = bench::Report<Table>;
 
 /// How much work a run does, and its random numbers: a fresh seed for each figure.
 class Run {

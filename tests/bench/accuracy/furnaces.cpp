@@ -80,8 +80,7 @@ Table single_scattering(Run& run) {
       "With scattering between microfacets (the default; Heitz et al. 2016) all of it must; "
       "without it, as in most renderers, a part is lost. Single-scattering values of Mitsuba "
       "0.6 stand beside; pbrt-v4 and Mitsuba agree on them within .03 only, as their "
-      "shadowing of transmitted light differs, so the figure is held to .03.",
-      Table::Layout::columns};
+      "shadowing of transmitted light differs, so the figure is held to .03."};
   const std::pair<double, double> peers[] = {{.02, 0},   {.05, .983}, {.1, .945}, {.25, .787},
                                              {.5, .556}, {.75, 0},    {1, .305}};
   for (const auto& [alpha, mitsuba] : peers) {
@@ -100,8 +99,7 @@ Table hard_cases(Run& run) {
       "hard", "Hard cases",
       "White furnaces where renderers go wrong: the mean must be 1, no sample may be NaN or "
       "infinite, and no path may be given up with energy left. The two rows of a sun (peak "
-      "34,000) compare a render with that of another seed.",
-      Table::Layout::columns};
+      "34,000) compare a render with that of another seed."};
   for (const HardCase& c : test::hard_cases) {
     add_case(table, run,
              text("alpha %g, sigma_s %g / mm, ior %g, g %g, radius %g mm", c.alpha, c.sigma_s,

@@ -60,8 +60,7 @@ Table explorable_films(Run& run) {
       "the largest over all pixels and channels, and the mean, over a spectral glass, a dye of "
       "a narrow band and plain RGB, r of 0, 0.3 and 1, and s of 0, 0.1, 0.5, 0.9, 0.99 and "
       "1. Bounds to keep: 0.001 and 0.0002. Most of it is the half floats that the film is kept in "
-      "(up to 2^-11 = 0.00049 of a value), whatever the absorption; *bins alone* leaves them out.",
-      Table::Layout::columns};
+      "(up to 2^-11 = 0.00049 of a value), whatever the absorption; *bins alone* leaves them out."};
   constexpr double reference_mm = 10, densest = 37 / reference_mm;
   constexpr double axis[] = {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.9999};
   const Absorber absorbers[] = {

@@ -89,8 +89,7 @@ Table interfaced_lambertian(Run& run) {
               "Chandrasekhar's H function and not Lambert's law. Both keep all energy, but the "
               "picture steps at s = 1: mean radiance over a sphere lit by the half of the sky "
               "behind the camera, or from within 30 degrees of it; the ratio is the step. "
-              "Without an interface (ior 1) both have exact values.",
-              Table::Layout::columns};
+              "Without an interface (ior 1) both have exact values."};
   const ChandrasekharH h;
   const auto chandrasekhar = [&h, table = std::vector<double>()](double mu, double mu_i) mutable {
     constexpr int n = 1024;

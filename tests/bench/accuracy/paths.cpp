@@ -33,8 +33,7 @@ Table mean_path_lengths(Run& run) {
       "where nothing scatters and the surface is smooth. It guards the lengths from which "
       "absorption is developed. Up to sigma_s R = 100 from renders; beyond, nearly all light "
       "turns back and nearly all length is travelled deep inside, so that the same walk is "
-      "split with depth instead.",
-      Table::Layout::columns};
+      "split with depth instead."};
   const std::string source = "Blanco and Fournier 2003";
   for (const double ior : {1.0, 1.33, 1.5, 2.5}) {
     const std::string column = text("ior %g", ior);

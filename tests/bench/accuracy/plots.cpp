@@ -1,30 +1,22 @@
 // The plots of the tables that have one.
 
-#include <cstdlib>
-
 #include "tests/bench/accuracy/document.h"
 #include "tests/bench/report/gnuplot.h"
 
 namespace translucube::accuracy {
 namespace {
 
-/// The number at the end of a row's name.
-double abscissa(const std::string& row) {
-  const std::size_t space = row.find_last_of(' ');
-  return std::strtod(row.c_str() + (space == std::string::npos ? 0 : space + 1), nullptr);
-}
-
 /// A gnuplot data block of the column over its rows that begin with `prefix`: x, y, standard error,
 /// expected value.
 std::string data(const Table& table, const std::string& name, const std::string& column,
                  const std::string& prefix) {
-  std::string block = "$" + name + " << EOD\n";
+  std::string lines;
   for (const Figure& f : table.figures)
     if (f.column == column && f.row.starts_with(prefix))
-      block +=
-          text("%.9g %.9g %.9g %s\n", abscissa(f.row), f.measured.mean, f.measured.standard_error,
-               f.truth && f.truth->tolerance > 0 ? text("%.9g", f.truth->value).c_str() : "NaN");
-  return block + "EOD\n";
+      lines += text(
+          "%.9g %.9g %.9g %s\n", bench::abscissa(f.row), f.measured.mean, f.measured.standard_error,
+          f.truth && f.truth->tolerance > 0 ? text("%.9g", f.truth->value).c_str() : "NaN");
+  return bench::data_block(name, lines);
 }
 
 std::string lengths(const Table& table) {
@@ -87,15 +79,11 @@ std::string dipole(const Table& table) {
 }  // namespace
 
 void draw_plots(const Report& report, const std::filesystem::path& folder) {
-  bench::require_gnuplot();
-  std::filesystem::create_directories(folder);
-  for (const Table& table : report.tables) {
-    const std::filesystem::path file = folder / (table.id + ".svg");
-    if (table.id == "lengths") bench::draw(lengths(table), file);
-    if (table.id == "microfacets") bench::draw(microfacets(table), file);
-    if (table.id == "explorable") bench::draw(explorable(table), file);
-    if (table.id == "dipole") bench::draw(dipole(table), file);
-  }
+  bench::draw(bench::drawings_of<Table>(report.tables, {{"lengths", lengths},
+                                                        {"microfacets", microfacets},
+                                                        {"explorable", explorable},
+                                                        {"dipole", dipole}}),
+              folder);
 }
 
 }  // namespace translucube::accuracy

@@ -14,10 +14,9 @@
 namespace translucube::speed {
 namespace {
 
-constexpr int size = 256;
-constexpr Quantity samples_of_cycles{"samples", "%.0f"}, cpu{"CPU s", "%.2f"},
-    ns{"ns a sample", "%.0f"}, theirs{"Cycles, relMSE × CPU s"}, ours{"ours"},
-    ratio{"Cycles / ours", "%.1f"}, brightness{"mean, of ours", "%.3f"};
+constexpr int cycles_size = 256;
+constexpr Quantity samples_of_cycles{"samples", "%.0f"}, theirs{"Cycles, relMSE × CPU s"},
+    ours{"ours"}, cycles_over_ours{"Cycles / ours", "%.1f"}, brightness{"mean, of ours", "%.3f"};
 
 /// CPU ns of a sample in Cycles (shared/peers.md): tells how many samples are affordable.
 struct Expected {
@@ -30,7 +29,8 @@ constexpr Expected expected[] = {{"A0", 737},     {"A2", 723},       {"R05", 3'7
 constexpr double cpu_seconds_each = 20;
 
 std::uint32_t affordable(const Expected& material, double effort) {
-  const double samples = effort * cpu_seconds_each / (1e-9 * material.ns * size * size);
+  const double samples =
+      effort * cpu_seconds_each / (1e-9 * material.ns * cycles_size * cycles_size);
   return static_cast<std::uint32_t>(std::clamp(samples, 4.0, 64.0));
 }
 
@@ -59,19 +59,19 @@ Tables cycles(Run& run) {
     return {table};
   }
   const server::test::TempFolder folder;
-  const SceneSpec scene = peer_scene({}, size, 1);
+  const SceneSpec scene = peer_scene({}, cycles_size, 1);
   std::string command = "blender -b --factory-startup -P " +
                         in_repository("tests/bench/cycles.py").string() + " -- --environment " +
                         std::get<ImageEnvironmentSpec>(scene.environment.source).file.string() +
                         " --out " + folder.path().string() +
-                        text(" --size %d --threads %d", size, run.threads);
+                        text(" --size %d --threads %d", cycles_size, run.threads);
   for (const Expected& material : expected) {
     if (!run.chosen(material.material)) continue;
     const Coefficients& c = peer_material(material.material).coefficients;
     command += text(" --material %s,%g,%g,%g,%u", material.material, c.alpha, c.sigma_s,
                     c.sigma_a_peak, affordable(material, run.effort));
   }
-  const Ran blender = run_shell(command);
+  const ShellRun blender = run_shell(command);
   std::ifstream file(folder / "cycles.json");
   if (!blender.succeeded || !file)
     throw std::runtime_error(
@@ -93,14 +93,15 @@ Tables cycles(Run& run) {
     const Coefficients& c = peer_material(material.material).coefficients;
     const double error =
         rel_mse_of_pair(images.at(0), images.at(1), reference_of(images, c)).trimmed;
-    const Pair pair = render_pair(run, peer_scene(c, size, 0), run.samples(64));
+    const Pair pair = render_pair(run, peer_scene(c, cycles_size, 0), run.samples(64));
     const double cost = pair.error().trimmed * pair.cpu_seconds;
     table.add(material.material, samples_of_cycles, samples);
-    table.add(material.material, cpu, seconds);
-    table.add(material.material, ns, 1e9 * seconds / (samples * size * size));
+    table.add(material.material, cpu_seconds, seconds);
+    table.add(material.material, ns_a_sample,
+              1e9 * seconds / (samples * cycles_size * cycles_size));
     table.add(material.material, theirs, error * seconds);
     table.add(material.material, ours, cost);
-    table.add(material.material, ratio, error * seconds / cost);
+    table.add(material.material, cycles_over_ours, error * seconds / cost);
     table.add(material.material, brightness, mean(images[0], images[1]) / mean(pair.a, pair.b));
   }
   return {table};

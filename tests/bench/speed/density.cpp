@@ -6,9 +6,8 @@
 namespace translucube::speed {
 namespace {
 
-constexpr Quantity ns{"ns a sample", "%.0f"}, time_growth{"time, of σR = 30"},
-    error{"relMSE × samples", "%.3g", 0.3}, error_growth{"error, of σR = 30"},
-    flights{"flights", "%.2f", 0.02}, connections{"connections", "%.2f", 0.02};
+constexpr Quantity time_growth{"time, of σR = 30"},
+    noise_of_sample{"relMSE × samples", "%.3g", 0.3}, error_growth{"error, of σR = 30"};
 constexpr double densities[] = {30, 100, 300, 1e3, 1e4, 1e5, 1e6};
 /// Two renders tell the error to a few percent.
 constexpr double noise = 1.05;
@@ -25,10 +24,12 @@ Tables density(Run& run) {
     const Pair pair = render_pair(run, peer_scene({0, 0, sigma_s}, 128, 0), run.samples(64));
     const std::string row = text("σR %g", sigma_s);
     const auto samples = static_cast<double>(pair.counters.camera_samples);
-    table.add(row, ns, pair.ns_per_sample());
-    table.add(row, time_growth, table.value(row, ns) / table.value("σR 30", ns), at_most(1.5));
-    table.add(row, error, pair.error().trimmed * pair.samples);
-    table.add(row, error_growth, table.value(row, error) / table.value("σR 30", error),
+    table.add(row, ns_a_sample, pair.ns_per_sample());
+    table.add(row, time_growth, table.value(row, ns_a_sample) / table.value("σR 30", ns_a_sample),
+              at_most(1.5));
+    table.add(row, noise_of_sample, pair.error().trimmed * pair.samples);
+    table.add(row, error_growth,
+              table.value(row, noise_of_sample) / table.value("σR 30", noise_of_sample),
               at_most(noise));
     table.add(row, flights, static_cast<double>(pair.counters.flights) / samples);
     table.add(row, connections, static_cast<double>(pair.counters.light_samples) / samples);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/bench/report/markdown.h"
 #include "tests/bench/speed/reasons.h"
 
 namespace translucube::speed {
@@ -93,13 +92,7 @@ std::string markdown(const Report& report) {
       "The peers are Cycles (Blender 3.4.1), Mitsuba 0.6 and pbrt-v4 on the same scene and "
       "materials, measured on a 2-core AMD EPYC; *best peer* is the best of the three. Their times "
       "are soft by some tens of percent. All numbers are in [speed.json](speed.json).\n";
-  for (const Table& table : report.tables) {
-    out += "\n## " + table.title + "\n\n" + table.text + "\n";
-    if (!table.figures.empty()) out += "\n" + columns(table);
-    if (!table.remark.empty()) out += "\n" + table.remark + "\n";
-    for (const Plot& plot : table.plots)
-      out += "\n![" + plot.caption + "](speed/" + plot.name + ".svg)\n";
-  }
+  for (const Table& table : report.tables) out += bench::section(table, columns(table), "speed");
   return out;
 }
 

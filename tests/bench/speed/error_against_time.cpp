@@ -7,7 +7,7 @@
 namespace translucube::speed {
 namespace {
 
-constexpr int size = 128;
+constexpr int error_size = 128;
 /// The dipole's opacity is the cube's coordinate for half the radius, as for the service's default
 /// sphere.
 constexpr double reference_thickness_mm = 0.5;
@@ -31,7 +31,7 @@ Tables error_against_time(Run& run) {
     if (samples.empty() || run.samples(n) > samples.back()) samples.push_back(run.samples(n));
   for (const PeerMaterial& material : peer_materials) {
     if (!run.chosen(material.name)) continue;
-    SceneSpec spec = peer_scene(material.coefficients, size, 0);
+    SceneSpec spec = peer_scene(material.coefficients, error_size, 0);
     const auto render = [&] {
       spec.seed = run.next_seed();
       return trace(*build_scene(spec), samples, run.threads);

@@ -1,10 +1,10 @@
 #include "tests/bench/speed/figures.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <cmath>
 #include <stdexcept>
 
-#include "tests/bench/report/markdown.h"
+#include "tests/bench/report/json.h"
 
 namespace translucube::speed {
 
@@ -14,22 +14,10 @@ void Table::add(std::string row, const Quantity& quantity, double value,
       {std::move(row), quantity.name, value, quantity.format, quantity.spread, target});
 }
 
-const Figure* Table::find(const std::string& row, const std::string& column) const {
-  for (const Figure& figure : figures)
-    if (figure.row == row && figure.column == column) return &figure;
-  return nullptr;
-}
-
 double Table::value(const std::string& row, const Quantity& quantity) const {
   const Figure* figure = find(row, quantity.name);
   if (!figure) throw std::logic_error(id + " has no " + row + ", " + quantity.name);
   return figure->value;
-}
-
-std::vector<std::string> Table::rows() const {
-  std::vector<std::string> names;
-  for (const Figure& figure : figures) bench::remember(names, figure.row);
-  return names;
 }
 
 std::string name_of(const Table& table, const Figure& figure) {
@@ -51,40 +39,28 @@ Verdict judge(const Report& report) {
 }
 
 nlohmann::json to_json(const Report& report) {
-  nlohmann::json tables = nlohmann::json::array();
-  for (const Table& table : report.tables) {
-    nlohmann::json figures = nlohmann::json::array();
-    for (const Figure& figure : table.figures) {
-      nlohmann::json entry{
-          {"row", figure.row}, {"quantity", figure.column}, {"value", figure.value}};
-      if (figure.spread > 0) entry["spread"] = figure.spread;
-      if (figure.target) {
-        const bool most = figure.target->sense == Target::Sense::at_most;
-        entry["target"] = {{most ? "at_most" : "at_least", figure.target->bound}};
-        entry["met"] = figure.target->met(figure.value);
-      }
-      figures.push_back(std::move(entry));
+  nlohmann::json json = bench::to_json(report, [](const Figure& figure) {
+    nlohmann::json entry{{"row", figure.row}, {"quantity", figure.column}, {"value", figure.value}};
+    if (figure.spread > 0) entry["spread"] = figure.spread;
+    if (figure.target) {
+      const bool most = figure.target->sense == Target::Sense::at_most;
+      entry["target"] = {{most ? "at_most" : "at_least", figure.target->bound}};
+      entry["met"] = figure.target->met(figure.value);
     }
-    tables.push_back({{"id", table.id}, {"title", table.title}, {"figures", std::move(figures)}});
-  }
-  return {{"effort", report.effort},           {"seed", report.seed},
-          {"threads", report.threads},         {"machine", report.machine},
-          {"cpu_seconds", report.cpu_seconds}, {"tables", std::move(tables)}};
+    return entry;
+  });
+  json["threads"] = report.threads;
+  json["machine"] = report.machine;
+  return json;
 }
 
 Report report_from_json(const nlohmann::json& json) {
-  Report report;
-  report.effort = json.at("effort");
-  for (const nlohmann::json& t : json.at("tables")) {
-    Table table{t.at("id"), t.at("title"), ""};
-    for (const nlohmann::json& f : t.at("figures")) {
-      if (f.at("value").is_null()) continue;  // not a number
-      table.figures.push_back(
-          {f.at("row"), f.at("quantity"), f.at("value"), "", f.value("spread", 0.0), {}});
-    }
-    report.tables.push_back(std::move(table));
-  }
-  return report;
+  return {bench::report_from_json<Table>(json, [](const nlohmann::json& f) {
+    const nlohmann::json& value = f.at("value");
+    return Figure{
+        f.at("row"), f.at("quantity"),       value.is_null() ? std::nan("") : value.get<double>(),
+        "",          f.value("spread", 0.0), {}};
+  })};
 }
 
 std::vector<std::string> compare(const Report& fresh, const Report& committed) {

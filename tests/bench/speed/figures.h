@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "renderer/base/sampler.h"
+#include "tests/bench/report/table.h"
 #include "tests/bench/report/text.h"
 
 namespace translucube::speed {
@@ -45,31 +46,17 @@ struct Figure {
   std::optional<Target> target;
 };
 
-struct Plot {
-  std::string name, caption;
-};
-
-struct Table {
-  std::string id, title, text;
-  std::vector<Figure> figures = {};
-  std::vector<Plot> plots = {};
-  std::string remark = {};  ///< found while measuring; below the table
-
+struct Table : bench::Table<Figure> {
   void add(std::string row, const Quantity& quantity, double value,
            std::optional<Target> target = {});
-  const Figure* find(const std::string& row, const std::string& column) const;
   /// Expects that there is one.
   double value(const std::string& row, const Quantity& quantity) const;
-  std::vector<std::string> rows() const;
 };
 
 /// "materials, A0, relMSE x CPU s": names a figure, in reasons.h too.
 std::string name_of(const Table& table, const Figure& figure);
 
-struct Report {
-  std::vector<Table> tables;
-  double effort = 1, cpu_seconds = 0;
-  std::uint64_t seed = 1;
+struct Report : bench::Report<Table> {
   int threads = 0;
   std::string machine;
 };

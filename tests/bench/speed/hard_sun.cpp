@@ -11,8 +11,8 @@
 namespace translucube::speed {
 namespace {
 
-constexpr int size = 96, references = 4;
-constexpr Quantity untrimmed{"untrimmed × CPU s"}, trimmed{"trimmed × CPU s"},
+constexpr int sun_size = 96, references = 4;
+constexpr Quantity untrimmed_cost{"untrimmed × CPU s"}, trimmed_cost{"trimmed × CPU s"},
     largest{"largest pixel / converged", "%.2f"};
 
 struct Rendered {
@@ -20,7 +20,7 @@ struct Rendered {
   double cpu_seconds = 0;
 };
 Rendered render_once(Run& run, const PeerMaterial& material, std::uint32_t samples) {
-  SceneSpec spec = peer_scene(material.coefficients, size, run.next_seed());
+  SceneSpec spec = peer_scene(material.coefficients, sun_size, run.next_seed());
   spec.environment.source = ImageEnvironmentSpec{sunrise(run)};
   Snapshot end = std::move(trace(*build_scene(spec), {samples}, run.threads).front());
   return {std::move(end.image), end.cpu_seconds};
@@ -29,7 +29,7 @@ Rendered render_once(Run& run, const PeerMaterial& material, std::uint32_t sampl
 struct Cost {
   double trimmed, untrimmed;  ///< relMSE x CPU s
 };
-Cost cost(const Rendered& a, const Rendered& b, const Image& reference) {
+Cost cost_of(const Rendered& a, const Rendered& b, const Image& reference) {
   const RelMse error = rel_mse_of_pair(a.image, b.image, reference);
   const double seconds = (a.cpu_seconds + b.cpu_seconds) / 2;
   return {error.trimmed * seconds, error.untrimmed * seconds};
@@ -71,9 +71,9 @@ Tables hard_sun(Run& run) {
       if (i > 0) others.push_back(renders.back().image);
     }
     const Image converged = mean_of(others), reference = test::smoothed(converged);
-    const Cost found = cost(renders[0], renders[1], reference);
-    table.add(name, trimmed, found.trimmed);
-    table.add(name, untrimmed, found.untrimmed);
+    const Cost found = cost_of(renders[0], renders[1], reference);
+    table.add(name, trimmed_cost, found.trimmed);
+    table.add(name, untrimmed_cost, found.untrimmed);
     table.add(name, largest, largest_ratio(renders[0].image, converged), at_most(10));
   }
   return {table};

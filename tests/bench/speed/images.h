@@ -13,6 +13,13 @@ namespace translucube::speed {
 using test::mean_of, test::reference_of, test::rel_mse, test::rel_mse_of_pair, test::RelMse;
 using test::peer_material, test::peer_materials, test::peer_scene, test::PeerMaterial;
 
+// Columns of several tables.
+inline constexpr Quantity ns_a_sample{"ns a sample", "%.0f"}, flights{"flights", "%.2f", 0.02},
+    connections{"connections", "%.2f", 0.02}, cpu_seconds{"CPU s", "%.3f"};
+
+/// The reference thickness of the service's default sphere [mm].
+inline constexpr double reference_mm = 10;
+
 /// What a render is after some of its samples.
 struct Snapshot {
   std::uint32_t samples = 0;  ///< of a pixel

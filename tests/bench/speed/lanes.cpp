@@ -7,7 +7,7 @@
 namespace translucube::speed {
 namespace {
 
-constexpr Quantity ns{"ns a sample", "%.0f"}, each{"each further lane", "%.2f %%"};
+constexpr Quantity each{"each further lane", "%.2f %%"};
 constexpr int counts[] = {1, 2, 4, 8, 16, 17, 32};
 
 /// The peers' scene with so many absorptions, spectral as the service's are.
@@ -47,7 +47,7 @@ Tables lanes(Run& run) {
     const double alone = median(times[0]);
     for (std::size_t i = 0; i < std::size(counts); ++i) {
       const std::string row = text("%s, lanes %d", name, counts[i]);
-      table.add(row, ns, median(times[i]));
+      table.add(row, ns_a_sample, median(times[i]));
       if (counts[i] == 1) continue;
       table.add(row, each, 100 * (median(times[i]) / alone - 1) / (counts[i] - 1),
                 counts[i] == 17 ? std::optional(at_most(5)) : std::nullopt);

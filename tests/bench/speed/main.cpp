@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "renderer/base/parallel.h"
-#include "tests/bench/report/files.h"
+#include "tests/bench/report/program.h"
 #include "tests/bench/speed/document.h"
 #include "tests/bench/speed/guard.h"
 #include "tests/bench/speed/sections.h"
@@ -15,7 +15,9 @@
 namespace {
 
 using namespace translucube::speed;
-using translucube::bench::process_cpu_seconds, translucube::bench::write;
+using translucube::bench::Settings, translucube::bench::add_options,
+    translucube::bench::committed_figures, translucube::bench::for_each_section,
+    translucube::bench::write;
 
 struct Section {
   const char* id;
@@ -43,43 +45,22 @@ std::string processor() {
   return "unknown processor";
 }
 
-/// Sections have random numbers of their own, so that one alone gives the figures of all.
-Report measure(const Run& settings, const std::vector<std::string>& only) {
+Report measure(const Settings& settings, const Run& run) {
   Report report;
   report.effort = settings.effort;
   report.seed = settings.seed;
   report.threads = translucube::thread_count(settings.threads);
   report.machine = processor();
-  const double start = process_cpu_seconds();
-  std::uint64_t index = 0;
-  for (const Section& section : sections) {
-    Run run = settings;
-    run.seed = translucube::hash_combine(settings.seed, ++index);
-    if (!only.empty() && !std::ranges::count(only, section.id)) continue;
-    const double began = process_cpu_seconds();
-    std::ranges::move(section.measure(run), std::back_inserter(report.tables));
-    std::fprintf(stderr, "%-10s %6.1f CPU s\n", section.id, process_cpu_seconds() - began);
-  }
-  report.cpu_seconds = process_cpu_seconds() - start;
+  report.cpu_seconds =
+      for_each_section(sections, settings, [&](const Section& section, std::uint64_t seed) {
+        Run own = run;
+        own.seed = seed;
+        std::ranges::move(section.measure(own), std::back_inserter(report.tables));
+      });
   return report;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CLI::App app{"Measures the renderer's speed; writes speed.md, speed.json and plots."};
-  Run run;
-  std::vector<std::string> only;
-  std::string out, json, committed, guard_file;
-  std::vector<std::string> ids;
-  for (const Section& section : sections) ids.push_back(section.id);
-  app.add_option("--effort", run.effort, "share of the default's samples and repetitions")
-      ->check(CLI::Range(1e-3, 1e3));
-  app.add_option("--seed", run.seed, "random numbers");
-  app.add_option("--threads", run.threads, "0: all cores");
-  app.add_option("--only", only, "sections, separated by commas")
-      ->delimiter(',')
-      ->check(CLI::IsMember(ids));
+void add_own_options(CLI::App& app, Run& run) {
   app.add_option("--materials", run.materials, "of the peers' list, separated by commas")
       ->delimiter(',');
   app.add_option("--samples", run.material_samples,
@@ -90,53 +71,63 @@ int main(int argc, char** argv) {
       ->check(CLI::ExistingFile);
   app.add_flag("--cycles", run.cycles,
                "render the same in Blender's Cycles, where it is installed");
-  app.add_option("--out", out, "folder to write the documents to");
-  app.add_option("--json", json, "file to write the figures to");
-  app.add_option("--check", committed,
-                 "speed.json to compare with; exits 1 where errors or work "
-                 "of the same effort have risen (times are left out)")
-      ->check(CLI::ExistingFile);
-  app.add_option(
-      "--write-guard", guard_file,
-      "nothing but this: writes tests/transport/efficiency.json, the ceilings of variance "
-      "and counted work");
-  // What sections ask of a process of its own.
+}
+
+/// Instead of measuring: the guard's file, and what sections ask of a process of its own.
+struct Errand {
+  std::string guard_file;
   std::vector<int> film;
   std::string rendered;
   int size = 128;
-  app.add_option("--film-memory", film)->expected(2)->group("");
-  app.add_option("--render", rendered)->group("");
-  app.add_option("--size", size)->group("");
-  CLI11_PARSE(app, argc, argv);
-  try {
+
+  void add_options(CLI::App& app) {
+    app.add_option("--write-guard", guard_file,
+                   "nothing but this: writes tests/transport/efficiency.json, the ceilings of "
+                   "variance and counted work");
+    app.add_option("--film-memory", film)->expected(2)->group("");
+    app.add_option("--render", rendered)->group("");
+    app.add_option("--size", size)->group("");
+  }
+  /// False where there is none.
+  bool run(Run run) const {
     if (!film.empty()) {
       std::printf("%.0f\n", film_memory(film[0], film[1], run.threads));
-      return 0;
-    }
-    if (!guard_file.empty()) {
+    } else if (!guard_file.empty()) {
       write(guard_file, guard());
-      return 0;
-    }
-    if (!rendered.empty()) {
+    } else if (!rendered.empty()) {
       run.materials = {rendered};
       render_to_profile(run, size);
-      return 0;
+    } else {
+      return false;
     }
-    const Report report = measure(run, only);
-    const std::string page = markdown(report);
-    if (out.empty() && json.empty() && committed.empty()) std::fputs(page.c_str(), stdout);
-    if (!json.empty()) write(json, to_json(report).dump(1) + "\n");
-    if (!out.empty()) {
-      const std::filesystem::path folder(out);
-      draw_plots(report, folder / "speed");
-      write(folder / "speed.json", to_json(report).dump(1) + "\n");
-      write(folder / "speed.md", page);
-    }
+    return true;
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Measures the renderer's speed; writes speed.md, speed.json and plots."};
+  Settings settings;
+  Run run;
+  Errand errand;
+  std::vector<std::string> ids;
+  for (const Section& section : sections) ids.emplace_back(section.id);
+  add_options(app, settings, "speed", ids);
+  add_own_options(app, run);
+  errand.add_options(app);
+  CLI11_PARSE(app, argc, argv);
+  run.effort = settings.effort;
+  run.seed = settings.seed;
+  run.threads = settings.threads;
+  try {
+    if (errand.run(run)) return 0;
+    const Report report = measure(settings, run);
+    write(settings, {"speed", markdown(report), to_json(report).dump(1) + "\n", "speed",
+                     [&](const auto& folder) { draw_plots(report, folder); }});
     std::vector<std::string> complaints;
-    if (!committed.empty()) {
-      std::ifstream file(committed);
-      complaints = compare(report, report_from_json(nlohmann::json::parse(file)));
-    }
+    if (const nlohmann::json committed = committed_figures(settings); !committed.is_null())
+      complaints = compare(report, report_from_json(committed));
     for (const std::string& complaint : complaints) std::fprintf(stderr, "%s\n", complaint.c_str());
     return complaints.empty() ? 0 : 1;
   } catch (const std::exception& error) {

@@ -6,12 +6,11 @@
 namespace translucube::speed {
 namespace {
 
-constexpr Quantity cpu{"CPU s", "%.3f"}, ns{"ns a sample", "%.0f"}, trimmed{"relMSE", "%.3g", 0.3},
-    untrimmed{"untrimmed", "%.3g", 1.0}, cost{"relMSE × CPU s"},
-    untrimmed_cost{"untrimmed × CPU s"}, peer{"best peer", "%g"}, ratio{"peer / ours"};
-constexpr Quantity flights{"flights", "%.2f", 0.02}, events{"boundary events", "%.2f", 0.02},
-    connections{"connections", "%.2f", 0.02}, red{"mean R", "%.4f"}, green{"mean G", "%.4f"},
-    blue{"mean B", "%.4f"};
+constexpr Quantity trimmed{"relMSE", "%.3g", 0.3}, untrimmed{"untrimmed", "%.3g", 1.0},
+    cost{"relMSE × CPU s"}, untrimmed_cost{"untrimmed × CPU s"}, peer{"best peer", "%g"},
+    peers_over_ours{"peer / ours"};
+constexpr Quantity events{"boundary events", "%.2f", 0.02}, red{"mean R", "%.4f"},
+    green{"mean G", "%.4f"}, blue{"mean B", "%.4f"};
 
 /// relMSE x CPU s at 256 x 256.
 struct Aim {
@@ -34,14 +33,14 @@ void add_costs(Table& table, const PeerMaterial& material, const Pair& pair, dou
                std::optional<Target> target) {
   const RelMse error = pair.error();
   const double seconds = pair.cpu_seconds;
-  table.add(material.name, cpu, seconds);
-  table.add(material.name, ns, pair.ns_per_sample());
+  table.add(material.name, cpu_seconds, seconds);
+  table.add(material.name, ns_a_sample, pair.ns_per_sample());
   table.add(material.name, trimmed, error.trimmed);
   table.add(material.name, untrimmed, error.untrimmed);
   table.add(material.name, untrimmed_cost, error.untrimmed * seconds);
   table.add(material.name, cost, error.trimmed * seconds, target);
   table.add(material.name, peer, best_peer);
-  table.add(material.name, ratio, best_peer / (error.trimmed * seconds));
+  table.add(material.name, peers_over_ours, best_peer / (error.trimmed * seconds));
 }
 
 void add_work(Table& table, const char* name, const Pair& pair) {

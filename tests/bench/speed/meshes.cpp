@@ -15,9 +15,8 @@ using namespace test;
 
 namespace {
 
-constexpr Quantity coverage{"coverage", "%.2f"}, ns{"ns a sample", "%.0f"},
-    ratio{"/ sphere", "%.2f"}, by_hit{"by hit", "%.2f"}, flights{"flights", "%.2f", 0.02},
-    mean{"mean", "%.4f"}, error{"±", "%.4f"};
+constexpr Quantity coverage{"coverage", "%.2f"}, over_sphere{"/ sphere", "%.2f"},
+    by_hit{"by hit", "%.2f"}, mean_radiance{"mean", "%.4f"}, its_error{"±", "%.4f"};
 constexpr double sigmas[] = {1, 10, 100};
 
 constexpr std::uint32_t two_passes = 8;  // tell the error of the mean
@@ -93,12 +92,13 @@ Tables meshes(Run& run) {
         const std::string row = text("%s, σR %g, %s", light.name, sigma_s, body.name.c_str());
         const bool judged = sigma_s == 10 && &body != &bodies.front();
         table.add(row, coverage, body.coverage);
-        table.add(row, ns, time);
-        table.add(row, ratio, time / sphere, judged ? std::optional(at_most(3)) : std::nullopt);
+        table.add(row, ns_a_sample, time);
+        table.add(row, over_sphere, time / sphere,
+                  judged ? std::optional(at_most(3)) : std::nullopt);
         table.add(row, by_hit, time / sphere * bodies.front().coverage / body.coverage);
         table.add(row, flights, static_cast<double>(film.counters.flights) / n);
-        table.add(row, mean, picture.mean);
-        table.add(row, error, picture.standard_error);
+        table.add(row, mean_radiance, picture.mean);
+        table.add(row, its_error, picture.standard_error);
       }
     }
   return {table};

@@ -9,26 +9,21 @@
 namespace translucube::speed {
 namespace {
 
-/// The number at the end of a row's name.
-double abscissa(const std::string& row) {
-  return std::strtod(row.c_str() + row.find_last_of(' ') + 1, nullptr);
-}
-
 /// A gnuplot data block: x and y over the rows that begin with `prefix`. `x`: the column, or empty
 /// for the number at the end of the row's name.
 std::string data(const Table& table, const std::string& name, const std::string& x,
                  const std::string& y, const std::string& prefix = "") {
-  std::string block = "$" + name + " << EOD\n";
+  std::string lines;
   for (const std::string& row : table.rows()) {
     if (!row.starts_with(prefix)) continue;
     const Figure *at = table.find(row, x), *figure = table.find(row, y);
-    if (figure) block += text("%.9g %.9g\n", at ? at->value : abscissa(row), figure->value);
+    if (figure) lines += text("%.9g %.9g\n", at ? at->value : bench::abscissa(row), figure->value);
   }
-  return block + "EOD\n";
+  return bench::data_block(name, lines);
 }
 
 /// A small plot for each material.
-std::string error(const Table& table) {
+std::string errors(const Table& table) {
   std::string script =
       "set multiplot layout 3,4\nset logscale xy\nset format '10^{%L}'\nset bmargin 3\n"
       "set key inside top right vertical samplen 1 font ',10'\nset tics font ',10'\n"
@@ -91,16 +86,11 @@ std::string cores(const Table& table) {
 }  // namespace
 
 void draw_plots(const Report& report, const std::filesystem::path& folder) {
-  bench::require_gnuplot();
-  std::filesystem::create_directories(folder);
-  for (const Table& table : report.tables) {
-    const std::filesystem::path file = folder / (table.id + ".svg");
-    if (table.figures.empty()) continue;
-    if (table.id == "error") bench::draw(error(table), file, 900, 700);
-    if (table.id == "density") bench::draw(density(table), file);
-    if (table.id == "lanes") bench::draw(lanes(table), file);
-    if (table.id == "cores") bench::draw(cores(table), file);
-  }
+  std::vector<bench::Drawing> drawings = bench::drawings_of<Table>(
+      report.tables, {{"error", errors}, {"density", density}, {"lanes", lanes}, {"cores", cores}});
+  for (bench::Drawing& drawing : drawings)
+    if (drawing.id == "error") drawing.width = 900, drawing.height = 700;
+  bench::draw(drawings, folder);
 }
 
 }  // namespace translucube::speed

@@ -77,10 +77,10 @@ Table by_function(Run& run) {
       (std::filesystem::temp_directory_path() / text("translucube-perf-%d", getpid())).string();
   for (const char* material : profiled) {
     if (!run.chosen(material)) continue;
-    const Ran recorded =
+    const ShellRun recorded =
         run_shell("perf record -q -o " + file + " -- " + rendering(material, run.samples(128)));
-    const Ran report = run_shell("perf report -i " + file +
-                                 " --stdio --no-children -F overhead,dso,symbol -g none");
+    const ShellRun report = run_shell("perf report -i " + file +
+                                      " --stdio --no-children -F overhead,dso,symbol -g none");
     std::filesystem::remove(file);
     if (!recorded.succeeded || !report.succeeded) {
       table.remark = "Not measured: `perf` is not allowed to look.";
@@ -109,16 +109,16 @@ Table by_function(Run& run) {
 
 /// Of the whole run, counted by valgrind; 0 where that fails.
 double instructions(const char* material, std::uint32_t samples) {
-  const Ran ran = run_shell("valgrind --tool=callgrind --callgrind-out-file=/dev/null " +
-                            rendering(material, samples) + " --threads 1 --size 32");
+  const ShellRun ran = run_shell("valgrind --tool=callgrind --callgrind-out-file=/dev/null " +
+                                 rendering(material, samples) + " --threads 1 --size 32");
   const std::size_t at = ran.output.find("Collected : ");
   return at == ran.output.npos ? 0 : std::strtod(ran.output.c_str() + at + 12, nullptr);
 }
 
 Table by_instructions(Run& run) {
   constexpr Quantity per_sample{"instructions a sample", "%.0f"}, events{"events a sample", "%.1f"},
-      per_event{"instructions an event", "%.0f"}, ns{"ns a sample", "%.0f"},
-      rate{"instructions a ns", "%.2f"}, bound{"bound, ns", "%.0f"};
+      per_event{"instructions an event", "%.0f"}, rate{"instructions a ns", "%.2f"},
+      bound{"bound, ns", "%.0f"};
   Table table{"instructions", "Instructions",
               "Instructions of a sample, counted by `valgrind` (AVX2 where it has it: valgrind "
               "knows no AVX-512) as the difference between two renders; events are flights, "
@@ -151,7 +151,7 @@ Table by_instructions(Run& run) {
     table.add(material, per_sample, counted);
     table.add(material, events, each);
     table.add(material, per_event, counted / each);
-    table.add(material, ns, time);
+    table.add(material, ns_a_sample, time);
     table.add(material, rate, counted / time);
     table.add(material, bound, counted / 12);
   }

@@ -5,15 +5,15 @@
 
 namespace translucube::speed {
 
-struct Ran {
+struct ShellRun {
   bool succeeded = false;
   std::string output;  ///< standard output and error
 };
 /// A command line of the shell.
-inline Ran run_shell(const std::string& command) {
+inline ShellRun run_shell(const std::string& command) {
   std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   if (!pipe) return {};
-  Ran ran;
+  ShellRun ran;
   char buffer[4096];
   for (std::size_t got; (got = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
     ran.output.append(buffer, got);

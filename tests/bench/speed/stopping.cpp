@@ -14,8 +14,7 @@
 namespace translucube::speed {
 namespace {
 
-constexpr int size = 48, renders = 100, under_the_sun = 20;
-constexpr double reference_mm = 10;
+constexpr int stopping_size = 48, renders = 100, under_the_sun = 20;
 /// A converged reference would take most of the time: one of so many times the samples, whose own
 /// noise is taken off, does as well.
 constexpr std::uint32_t reference_factor = 4;
@@ -34,8 +33,8 @@ SceneSpec random_scene(Rng& rng, const std::filesystem::path& environment, std::
   };
   const double absorption = 0.9 * rng.uniform(), roughness = coordinate(),
                scattering = coordinate();
-  SceneSpec spec =
-      peer_scene(from_cube({absorption, roughness, scattering}, 0, reference_mm), size, seed);
+  SceneSpec spec = peer_scene(from_cube({absorption, roughness, scattering}, 0, reference_mm),
+                              stopping_size, seed);
   spec.object = SphereObject{20};
   spec.camera.position_mm = {0, 0, 90};
   spec.environment.source = ImageEnvironmentSpec{environment};

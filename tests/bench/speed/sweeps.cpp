@@ -13,10 +13,9 @@
 namespace translucube::speed {
 namespace {
 
-constexpr Quantity cpu{"CPU s", "%.3f"}, ratio{"of 25 plain images", "%.2f"};
+constexpr Quantity of_plain_images{"of 25 plain images", "%.2f"};
 constexpr Quantity wall_ms{"wall ms", "%.1f"}, cpu_ms{"CPU ms", "%.1f"};
 constexpr double axis[] = {0, 0.25, 0.5, 0.75, 1};
-constexpr double reference_mm = 10;
 
 /// The service's default scene at a point of the cube.
 SceneSpec scene_at(const CubePoint& point, std::uint64_t seed) {
@@ -69,11 +68,11 @@ Table grid_sweep(Run& run) {
           develop_explorable(film, absorption.absorber, absorption.sigma_a_peak, run.threads);
       });
     }
-  table.add("25 plain images", cpu, plain);
-  table.add("25 × 5 by lanes", cpu, lanes);
-  table.add("25 × 5 by lanes", ratio, lanes / plain, at_most(1.2));
-  table.add("25 × 5 explorable", cpu, explorable);
-  table.add("25 × 5 explorable", ratio, explorable / plain);
+  table.add("25 plain images", cpu_seconds, plain);
+  table.add("25 × 5 by lanes", cpu_seconds, lanes);
+  table.add("25 × 5 by lanes", of_plain_images, lanes / plain, at_most(1.2));
+  table.add("25 × 5 explorable", cpu_seconds, explorable);
+  table.add("25 × 5 explorable", of_plain_images, explorable / plain);
   return table;
 }
 
