@@ -31,11 +31,11 @@ HWY_INLINE bool is_finite(Light light) { return std::isfinite(light[0] + light[1
 template <class Attenuate>
 HWY_INLINE void for_channels(const ContributionBatch& batch, DevelopedBatch& developed,
                              Attenuate&& attenuate) {
-  for (std::size_t i = 0; i < batch.size; i += hn::Lanes(D())) {
-    const Real length = load(&batch.length[i]);
-    hn::StoreInterleaved4(attenuate(load(&batch.r[i]), length, 0).v,
-                          attenuate(load(&batch.g[i]), length, 1).v,
-                          attenuate(load(&batch.b[i]), length, 2).v, hn::Zero(D()), D(),
+  for (std::size_t i = 0; i < batch.size; i += at_once) {
+    const Real length = load(batch.length, i);
+    hn::StoreInterleaved4(attenuate(load(batch.r, i), length, 0).v,
+                          attenuate(load(batch.g, i), length, 1).v,
+                          attenuate(load(batch.b, i), length, 2).v, hn::Zero(D()), D(),
                           &developed.light[pixel_floats * i]);
   }
 }
@@ -53,7 +53,7 @@ void develop_lane(const RgbLane& lane, const ContributionBatch& batch, Developed
   for_channels(batch, developed, [&](Real light, Real length, int channel) {
     const Real depth = Real(lane.sigma_a[channel]) * length;
     // exp() takes what is not a number for far below 0.
-    return light * select(hn::IsNaN(depth.v), depth, exp(-depth));
+    return light * select(is_nan(depth), depth, exp(-depth));
   });
 }
 
@@ -61,19 +61,17 @@ void develop_lane(const SpectralLane& lane, const ContributionBatch& batch,
                   DevelopedBatch& developed) {
   using Table = ColorOperatorTable;
   const Table& table = lane.table();
-  // Gathering the operators of as many contributions as a register has lanes takes longer than to
+  // Gathering the operators of as many contributions as a register holds takes longer than to
   // apply them one by one, each to the three channels at once.
   ContributionBatch::Integers segment;
   ContributionBatch::Floats within;
-  for (std::size_t i = 0; i < batch.size; i += hn::Lanes(D())) {
-    const Real x = fma(static_cast<float>(lane.sigma_a_peak()), load(&batch.length[i]), 1);
-    const Bits position = hn::Sub(hn::BitCast(DU(), x.v), hn::BitCast(DU(), Real(1).v));
-    const Bits last = hn::Set(DU(), static_cast<std::uint32_t>(table.segments() - 1));
-    hn::StoreU(hn::Min(hn::ShiftRight<Table::fraction_bits>(position), last), DU(), &segment[i]);
-    const Bits fraction = hn::And(position, hn::Set(DU(), Table::fraction_mask));
-    const Real t = Real(hn::ConvertTo(D(), hn::BitCast(DI(), fraction))) *
-                   Real(1.0f / (1u << Table::fraction_bits));
-    hn::StoreU(t.v, D(), &within[i]);
+  for (std::size_t i = 0; i < batch.size; i += at_once) {
+    const Real x = fma(static_cast<float>(lane.sigma_a_peak()), load(batch.length, i), 1);
+    const Bits position = as_bits(x) - as_bits(1);
+    const Bits last = static_cast<std::uint32_t>(table.segments() - 1);
+    store(min(shift_right<Table::fraction_bits>(position), last), segment, i);
+    const Real fraction = to_real(position & Bits(Table::fraction_mask));
+    store(fraction * Real(1.0f / (1u << Table::fraction_bits)), within, i);
   }
   for (std::size_t i = 0; i < batch.size; ++i) {
     const Table::Node* nodes = table.nodes() + segment[i];
@@ -115,20 +113,20 @@ void find_bins(const BinSpread& spread, const ContributionBatch& batch, SpreadBa
   const std::array<float, 3>& n = spread.short_nodes();
   const Real last(static_cast<float>(spread.bins().nodes - 1)),
       last_stencil(static_cast<float>(spread.bins().nodes - 4));
-  const Real to_first(static_cast<float>(1 / spread.bins().first));
+  const Real first_length(static_cast<float>(spread.bins().first)),
+      to_first(static_cast<float>(1 / spread.bins().first));
   const Real log_first(static_cast<float>(spread.log_first())),
       inverse_step(static_cast<float>(spread.inverse_step()));
   // Lagrange's divisors at 0 and at the second and third node.
   const Real at_0(-1 / (n[0] * n[1] * n[2])), at_1(1 / (n[1] * (n[1] - n[0]) * (n[1] - n[2]))),
       at_2(1 / (n[2] * (n[2] - n[0]) * (n[2] - n[1])));
-  for (std::size_t i = 0; i < batch.size; i += hn::Lanes(D())) {
-    const Real length = load(&batch.length[i]);
+  for (std::size_t i = 0; i < batch.size; i += at_once) {
+    const Real length = load(batch.length, i);
     const Real position = max(min((log(max(length, 1e-37f)) - log_first) * inverse_step, last), 0);
-    const Real node = max(min(Real(hn::Floor(position.v)) - 1, last_stencil), 0);
+    const Real node = max(min(floor(position) - 1, last_stencil), 0);
     const Real t = position - node, a = t - 1, b = t - 2, c = t - 3;
     const Real x = length * to_first, p = x - n[0], q = x - n[1], s = x - n[2];
-    const Mask outside = hn::Eq(length.v, hn::Zero(D())),
-               brief = hn::Lt(length.v, Real(static_cast<float>(spread.bins().first)).v);
+    const Mask outside = length == 0, brief = length < first_length;
     const auto choose = [&](Real of_none, Real of_short, Real of_long) {
       return select(outside, of_none, select(brief, of_short, of_long));
     };
@@ -136,11 +134,11 @@ void find_bins(const BinSpread& spread, const ContributionBatch& batch, SpreadBa
                w2 = choose(0, x * p * s * at_1, t * a * c * -0.5f),
                w3 = choose(0, x * p * q * at_2, t * a * b * (1.0f / 6));
     const Real bin = choose(0, 1, node + float(LengthBins::before_nodes));
-    hn::StoreU(hn::BitCast(DU(), hn::ConvertTo(DI(), bin.v)), DU(), &found.bin[i]);
-    hn::StoreU(w0.v, D(), &found.weights[0][i]);
-    hn::StoreU((Real(1) - (w0 + w2 + w3)).v, D(), &found.weights[1][i]);
-    hn::StoreU(w2.v, D(), &found.weights[2][i]);
-    hn::StoreU(w3.v, D(), &found.weights[3][i]);
+    store(to_whole(bin), found.bin, i);
+    store(w0, found.weights[0], i);
+    store(Real(1) - (w0 + w2 + w3), found.weights[1], i);
+    store(w2, found.weights[2], i);
+    store(w3, found.weights[3], i);
   }
 }
 

@@ -1,11 +1,8 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
 
-#include "renderer/base/vec.h"
+#include "renderer/base/batch.h"
 #include "renderer/film/absorption.h"
 #include "renderer/film/length_bins.h"
 
@@ -14,13 +11,8 @@ namespace translucube {
 /// Floats of a pixel while it is summed up: R, G, B and one that fills the register.
 inline constexpr std::size_t pixel_floats = 4;
 
-/// What paths brought to a tile, to be developed together (structure of arrays).
-struct ContributionBatch {
-  static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
-  using Floats = std::array<float, capacity>;
-  using Integers = std::array<std::uint32_t, capacity>;
-
-  std::size_t size = 0;
+/// What paths brought to a tile, to be developed together.
+struct ContributionBatch : Batch<256> {
   Integers pixel, tint;
   std::array<bool, capacity> carried;  ///< a part of a control variate
   Floats length;                       ///< inside the body, in its unit; 0: never inside

@@ -308,7 +308,7 @@ std::vector<EnvironmentSample> ImageEnvironment::sample(std::span<const Sample2>
     }
     batch.find(geometry());
     for (std::size_t i = 0; i < batch.size; ++i) {
-      const Vec3 towards{batch.x[i], batch.y[i], batch.z[i]};
+      const Vec3 towards = batch.direction[i];
       samples[first + i] = {towards,
                             seen(towards, value_at({batch.u[i], batch.v[i], batch.sin_theta[i]}))};
     }

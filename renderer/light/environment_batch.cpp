@@ -11,39 +11,34 @@
 HWY_BEFORE_NAMESPACE();
 namespace translucube::HWY_NAMESPACE {
 
-constexpr float pi_f = 3.14159265f;
-
 /// The angle of (x, y) from the x axis, in (-pi, pi].
 HWY_INLINE Real atan2(Real y, Real x) {
   const Real ax = abs(x), ay = abs(y), tiny(1e-30f);
-  const Real small = hn::Atan(D(), (min(ax, ay) / max(max(ax, ay), tiny)).v);
+  const Real small = atan(min(ax, ay) / max(max(ax, ay), tiny));
   const Real quarter = select(ay > ax, Real(pi_f / 2) - small, small);
   const Real half = select(x < 0, Real(pi_f) - quarter, quarter);
-  return hn::CopySign(half.v, y.v);
+  return copysign(half, y);
 }
 
-void Coordinates(EnvironmentBatch& batch, const MapGeometry& map, EnvironmentBatch::Floats& u,
+void Coordinates(const EnvironmentBatch& batch, const MapGeometry& map, EnvironmentBatch::Floats& u,
                  EnvironmentBatch::Floats& v, EnvironmentBatch::Floats& sin_theta) {
-  for (std::size_t i = 0; i < batch.size; i += hn::Lanes(D())) {
-    const Real x = load(&batch.x[i]), y = load(&batch.y[i]), z = load(&batch.z[i]);
-    const Real across = sqrt(fma(x, x, z * z));
-    const Real turned = (atan2(x, z) - Real(map.rotation)) * Real(-0.5f / pi_f) + Real(0.5f);
-    const Real wrapped = turned - Real(hn::Floor(turned.v));
-    hn::StoreU((wrapped * Real(map.width)).v, D(), &u[i]);
-    hn::StoreU((atan2(across, y) * Real(map.height / pi_f)).v, D(), &v[i]);
-    hn::StoreU(across.v, D(), &sin_theta[i]);
+  for (std::size_t i = 0; i < batch.size; i += at_once) {
+    const Vector d = load(batch.direction, i);
+    const Real across = sqrt(fma(d.x, d.x, d.z * d.z));
+    const Real turned = (atan2(d.x, d.z) - Real(map.rotation)) * Real(-0.5f / pi_f) + Real(0.5f);
+    store((turned - floor(turned)) * Real(map.width), u, i);
+    store(atan2(across, d.y) * Real(map.height / pi_f), v, i);
+    store(across, sin_theta, i);
   }
 }
 
 void Directions(MapDirections& batch, const MapGeometry& map) {
   const Real turn(2 * pi_f / map.width), polar(pi_f / map.height);
-  for (std::size_t i = 0; i < batch.size; i += hn::Lanes(D())) {
-    const Real azimuth = fnma(load(&batch.u[i]), turn, Real(pi_f + map.rotation));
-    const Real theta = load(&batch.v[i]) * polar, across = sin(theta);
-    hn::StoreU((across * sin(azimuth)).v, D(), &batch.x[i]);
-    hn::StoreU(cos(theta).v, D(), &batch.y[i]);
-    hn::StoreU((across * cos(azimuth)).v, D(), &batch.z[i]);
-    hn::StoreU(across.v, D(), &batch.sin_theta[i]);
+  for (std::size_t i = 0; i < batch.size; i += at_once) {
+    const Real azimuth = fnma(load(batch.u, i), turn, Real(pi_f + map.rotation));
+    const Real theta = load(batch.v, i) * polar, across = sin(theta);
+    store(Vector{across * sin(azimuth), cos(theta), across * cos(azimuth)}, batch.direction, i);
+    store(across, batch.sin_theta, i);
   }
 }
 
@@ -67,7 +62,7 @@ void EnvironmentBatch::look_up(const ImageEnvironment& environment) {
     value[i] = environment.value_at({u[i], v[i], sin_theta[i]});
   if (environment.side() == EnvironmentSide::front)
     for (std::size_t i = 0; i < size; ++i)
-      if (z[i] < 0) value[i].radiance = {};
+      if (direction.z[i] < 0) value[i].radiance = {};
 }
 
 }  // namespace translucube

@@ -1,35 +1,26 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-
+#include "renderer/base/batch.h"
 #include "renderer/light/environment.h"
 
 namespace translucube {
 
-/// Directions to be looked up in the environment together (structure of arrays).
-struct EnvironmentBatch {
-  static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
-  using Floats = std::array<float, capacity>;
-
-  std::size_t size = 0;
-  Floats x, y, z;                                ///< in: unit directions
+/// Directions to be looked up in the environment together.
+struct EnvironmentBatch : Batch<256> {
+  Vectors direction;                             ///< in: unit
   std::array<EnvironmentValue, capacity> value;  ///< out
 
-  /// Of value_from(), in single precision.
+  /// value_from() for all, in single precision.
   void look_up(const ImageEnvironment& environment);
 };
 
 /// Places in the map whose directions are asked for together.
-struct MapDirections {
-  static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
-  using Floats = std::array<float, capacity>;
+struct MapDirections : Batch<256> {
+  Floats u, v;        ///< in: MapCoordinates' x and y
+  Vectors direction;  ///< out
+  Floats sin_theta;   ///< out
 
-  std::size_t size = 0;
-  Floats u, v;                ///< in: MapCoordinates' x and y
-  Floats x, y, z, sin_theta;  ///< out
-
-  /// direction(), in single precision.
+  /// direction() for all, in single precision.
   void find(const MapGeometry& map);
 };
 

@@ -8,7 +8,6 @@ LightList::LightList(const Environment& environment, std::uint64_t key) {
   const auto* image = std::get_if<ImageEnvironment>(&environment);
   if (image == nullptr) return;
   Rng rng(key);
-  for (auto* floats : {&x, &y, &z, &pdf}) floats->resize(size);
   radiance.resize(size);
   std::vector<Sample2> numbers;
   numbers.reserve(size);
@@ -16,9 +15,7 @@ LightList::LightList(const Environment& environment, std::uint64_t key) {
     numbers.push_back({(i + rng.uniform()) / size, rng.uniform()});
   const std::vector<EnvironmentSample> lights = image->sample(numbers);
   for (std::uint32_t i = 0; i < size; ++i) {
-    x[i] = static_cast<float>(lights[i].direction.x);
-    y[i] = static_cast<float>(lights[i].direction.y);
-    z[i] = static_cast<float>(lights[i].direction.z);
+    direction.set(i, lights[i].direction);
     pdf[i] = static_cast<float>(lights[i].value.pdf);
     radiance[i] = lights[i].value.radiance;
   }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "renderer/base/batch.h"
 #include "renderer/light/environment.h"
 
 namespace translucube {
@@ -15,14 +16,14 @@ namespace translucube {
 struct LightList {
   static constexpr std::uint32_t size = 512;  ///< a power of two
 
-  LightList() = default;
+  LightList() {}
   /// Empty where the environment is the same everywhere: there is nothing to look for.
   LightList(const Environment& environment, std::uint64_t key);
 
   bool empty() const { return radiance.empty(); }
 
-  // Structure of arrays: directions to the lights (unit), their densities per solid angle.
-  std::vector<float> x, y, z, pdf;
+  VectorArrays<size> direction;  ///< towards the lights, unit
+  std::array<float, size> pdf;   ///< per solid angle
   std::vector<Rgb> radiance;
 };
 

@@ -1,4 +1,4 @@
-// Microfacets and refraction in as many lanes as a register has (see simd.h for how this is
+// Microfacets and refraction in as many elements as a register has (see simd.h for how this is
 // included): the same formulas as in microfacet.h, fresnel.h and microsurface.cpp.
 
 #include "renderer/base/simd.h"
@@ -12,8 +12,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace translucube::HWY_NAMESPACE {
-
-constexpr float pi_f = 3.14159265f;
 
 /// Ggx, and a ray's collision rate and chance of escape in its microsurface.
 struct Facets {
@@ -44,6 +42,12 @@ struct Facets {
 
 HWY_INLINE Real depth_beyond(Real depth) { return -log(max(-expm1(-depth), Real(1e-30f))); }
 HWY_INLINE Vector mirrored(Vector w) { return {w.x, w.y, -w.z}; }
+/// The normal, on w's side, of the facet by which light goes from wi to w; `eta`: index on wi's
+/// side over index on w's.
+HWY_INLINE Vector facet_between(Vector w, Vector wi, Real eta) {
+  const Vector h = fma(eta, wi, w);
+  return copysign(1, h.z) * normalize(h);
+}
 
 /// One side of the interface.
 struct Side {
@@ -59,9 +63,9 @@ struct Side {
     const Real p = (eta * cos_o - cos_t) / fma(eta, cos_o, cos_t);
     return {select(cos2_t > 0, Real(0.5f) * fma(s, s, p * p), 1), cos_t};
   }
-  /// Of w beyond a facet with normal m; w_m = dot(w, m).
+  /// The direction of w beyond a facet with normal m; w_m = dot(w, m).
   HWY_INLINE Vector refract(Vector w, Vector m, Real w_m, Real cos_t) const {
-    return fma(fma(w_m, inverse_eta, -cos_t), m, -(inverse_eta * w));
+    return fma(fms(w_m, inverse_eta, cos_t), m, -(inverse_eta * w));
   }
   /// |d m / d wi| of refraction; wi_m < 0.
   HWY_INLINE Real refraction_jacobian(Real w_m, Real wi_m) const {

@@ -4,10 +4,7 @@
 // precision. Collision by collision: each looks for light from a few directions of a list and sends
 // out a ray; of the rays that go into the body one is kept for each ray that arrived.
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-
+#include "renderer/base/batch.h"
 #include "renderer/light/light_list.h"
 #include "renderer/optics/interface.h"
 
@@ -23,39 +20,40 @@ struct BatchInterface {
 
 class MicrosurfaceBatch {
  public:
-  static constexpr std::size_t capacity = 256;  ///< a multiple of every register's lanes
-  /// So that equal places of two arrays do not fall into the same set of a cache.
-  static constexpr std::size_t padding = 16;
+  static constexpr std::size_t capacity = 256;
   /// Lights that a collision looks for.
   static constexpr std::size_t most_lights = 16;
-  using Floats = std::array<float, capacity + padding>;
-  using Integers = std::array<std::uint32_t, capacity + padding>;
 
-  /// Rays on their way from microfacet to microfacet (structure of arrays).
-  struct Walking {
-    std::size_t size = 0;
-    Integers slot;                      ///< of the arrival
-    Integers key_low, key_high, drawn;  ///< random numbers: a hash of the key and a count
-    Floats n_x, n_y, n_z;               ///< macroscopic normal on the side of arrival
-    Floats w_x, w_y, w_z;  ///< back along the ray, local, on the side where it is (side 1: arrival)
-    Floats side;           ///< 1 on the side of arrival, -1 beyond
+  /// Rays on their way from microfacet to microfacet.
+  struct Walking : Batch<capacity> {
+    Integers slot;  ///< the arrival's
+    Streams random;
+    Vectors n;    ///< macroscopic normal on the side of arrival
+    Vectors w;    ///< back along the ray, local, on the side where it is (side 1: arrival)
+    Floats side;  ///< 1 on the side of arrival, -1 beyond
     Floats depth, weight;
     Floats u, v;       ///< the numbers of the next microfacet's normal
     Floats connected;  ///< 1 where the light of this collision was looked for before, else 0
-    Floats inward_x, inward_y, inward_z, inward_weight;  ///< the reservoir, world
+    Vectors inward;    ///< with inward_weight: the reservoir, world
+    Floats inward_weight;
   };
   /// Rays that left to the outside.
-  struct Sent {
-    std::size_t size = 0;
+  struct Sent : Batch<capacity> {
     Integers slot;
-    Floats x, y, z, weight, pdf;
-    Floats connected;  ///< of the collision
+    Vectors direction;
+    Floats weight, pdf;
+    Floats connected;  ///< as in Walking, at the collision
   };
   /// Light that was found.
   struct Lit {
     std::size_t size = 0;
     std::array<std::uint32_t, capacity * most_lights> slot, light;
-    std::array<float, capacity * most_lights> share;  ///< of its radiance
+    std::array<float, capacity * most_lights> share;  ///< of the light's radiance
+  };
+  /// The ray that goes into the body for each slot, and behind the slots what nobody reads.
+  struct Inward : Batch<capacity> {
+    Vectors direction;
+    Floats weight;
   };
 
   /// A ray along `d` that meets an interface with normal `n` on its side; `u` draws the first
@@ -73,17 +71,14 @@ class MicrosurfaceBatch {
   const Sent& sent() const { return sent_; }
   const Lit& lit() const { return lit_; }
   /// When all have ended: the ray that goes into the body, for all that does.
-  double inward_weight(std::size_t slot) const { return inward_weight_[slot]; }
-  Vec3 inward(std::size_t slot) const {
-    return {inward_x_[slot], inward_y_[slot], inward_z_[slot]};
-  }
+  double inward_weight(std::size_t slot) const { return inward_.weight[slot]; }
+  Vec3 inward(std::size_t slot) const { return inward_.direction[slot]; }
 
  private:
   Walking walking_;
   Sent sent_;
   Lit lit_;
-  // One more than slots: what is written there is not meant.
-  std::array<float, capacity + 1> inward_x_, inward_y_, inward_z_, inward_weight_;
+  Inward inward_;
 };
 
 }  // namespace translucube

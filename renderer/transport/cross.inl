@@ -30,8 +30,7 @@ void Tracer<Body>::cross_rough(bool from_outside) {
     microsurface_.collide(interface, lights_, lights_each);
     const MicrosurfaceBatch::Lit& lit = microsurface_.lit();
     for (std::size_t i = 0; i < lit.size; ++i) {
-      const Vec3 direction{lights_.x[lit.light[i]], lights_.y[lit.light[i]],
-                           lights_.z[lit.light[i]]};
+      const Vec3 direction = lights_.direction[lit.light[i]];
       if (hides(crossing_[lit.slot[i]].p, direction)) continue;
       found[lit.slot[i]] += lights_.radiance[lit.light[i]] * lit.share[i];
     }
@@ -65,18 +64,17 @@ void Tracer<Body>::go_on_inside(Path& path, bool from_outside) {
 template <class Body>
 void Tracer<Body>::send_out(std::uint32_t lights_each) {
   const MicrosurfaceBatch::Sent& sent = microsurface_.sent();
-  const auto direction = [&](std::size_t i) { return Vec3{sent.x[i], sent.y[i], sent.z[i]}; };
   const float* ways = nullptr;
   if constexpr (Body::connects) {
     for (std::size_t i = 0; i < sent.size; ++i)
       if (sent.connected[i] > 0)
-        connector_.push_way(crossing_[sent.slot[i]], direction(i), sent.pdf[i]);
+        connector_.push_way(crossing_[sent.slot[i]], sent.direction[i], sent.pdf[i]);
     ways = connector_.weigh_ways().data();
   }
   for (std::size_t i = 0; i < sent.size; ++i) {
     Path& path = crossing_[sent.slot[i]];
     const double pdf = sent.connected[i] > 0 ? *ways++ : sent.pdf[i] / lights_each;
-    go_out(path, direction(i), path.weight * sent.weight[i],
+    go_out(path, sent.direction[i], path.weight * sent.weight[i],
            lights_each > 0 ? pdf : Path::not_looked_for);
   }
 }

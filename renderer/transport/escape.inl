@@ -22,9 +22,7 @@ void Tracer<Body>::escape(const Path& path) {
   Escapes& escapes = escapes_[path.length > 0 ? 1 : 0];
   EnvironmentBatch& batch = escapes.batch;
   const std::size_t i = batch.size++;
-  batch.x[i] = static_cast<float>(path.d.x);
-  batch.y[i] = static_cast<float>(path.d.y);
-  batch.z[i] = static_cast<float>(path.d.z);
+  batch.direction.set(i, path.d);
   escapes.from[i] = {path.n, path.length, path.weight, path.pdf, path.start, path.pixel, path.tint};
   if (batch.size == EnvironmentBatch::capacity) meet_environment(escapes);
 }

@@ -48,12 +48,10 @@ template <class Body>
 void Tracer<Body>::arrive(const SphereWalk::Arrivals& arrivals, std::span<const Path> paths) {
   for (std::size_t i = 0; i < arrivals.size; ++i) {
     Path& path = leaving_.emplace_back(paths[arrivals.slot[i]]);
-    path.p = path.n = {arrivals.n_x[i], arrivals.n_y[i], arrivals.n_z[i]};
-    path.d = {arrivals.d_x[i], arrivals.d_y[i], arrivals.d_z[i]};
+    path.p = path.n = arrivals.n[i];
+    path.d = arrivals.d[i];
     path.length += arrivals.length[i];
-    path.vertex = {{arrivals.from_x[i], arrivals.from_y[i], arrivals.from_z[i]},
-                   arrivals.from_depth2[i],
-                   arrivals.flight[i],
+    path.vertex = {arrivals.from[i], arrivals.from_depth2[i], arrivals.flight[i],
                    arrivals.phase[i]};
     path.colliding = false;
     collector_.note("boundary", path);

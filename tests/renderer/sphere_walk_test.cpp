@@ -69,7 +69,7 @@ Exits simd_exits(const WalkMedium& medium, int walks) {
     const SphereWalk::Arrivals& a = walk.arrivals();
     exits.flights += static_cast<double>(walk.under_way() + a.size) / walks;
     for (std::size_t i = 0; i < a.size; ++i) {
-      const Vec3 n{a.n_x[i], a.n_y[i], a.n_z[i]}, d{a.d_x[i], a.d_y[i], a.d_z[i]};
+      const Vec3 n = a.n[i], d = a.d[i];
       EXPECT_NEAR(length(n), 1, 1e-6);
       EXPECT_NEAR(length(d), 1, 1e-5);
       exits.cosine.push_back(dot(n, d));
@@ -129,8 +129,7 @@ TEST(SphereWalk, VerticesStandForAllCollisionsNearTheBoundary) {
       for (std::size_t i = 0; i < v.size; ++i) {
         const double optical = 0.5 * medium.sigma_s * v.depth2[i];
         EXPECT_NEAR(v.chance[i], medium.chance(v.depth2[i]), 1e-5);
-        const Vec3 p{v.p_x[i], v.p_y[i], v.p_z[i]};
-        EXPECT_NEAR(v.depth2[i], 1 - length_squared(p), 3e-6);
+        EXPECT_NEAR(v.depth2[i], 1 - length_squared(v.p[i]), 3e-6);
         sums[v.slot[i]] += std::exp(-optical) / v.chance[i];
       }
     });
@@ -150,9 +149,7 @@ TEST(SphereWalk, TellsWhereTheLastFlightBegan) {
   for_each_step({5, 0.3f, 0, 0.5f}, 4'000, [&](const SphereWalk& walk) {
     const SphereWalk::Arrivals& a = walk.arrivals();
     for (std::size_t i = 0; i < a.size; ++i) {
-      const Vec3 from{a.from_x[i], a.from_y[i], a.from_z[i]}, n{a.n_x[i], a.n_y[i], a.n_z[i]},
-          d{a.d_x[i], a.d_y[i], a.d_z[i]};
-      EXPECT_NEAR(length(n - from - double(a.flight[i]) * d), 0, 1e-5);
+      EXPECT_NEAR(length(a.n[i] - a.from[i] - double(a.flight[i]) * a.d[i]), 0, 1e-5);
       EXPECT_GE(a.phase[i], 0);
     }
   });
@@ -169,7 +166,7 @@ TEST(SphereWalk, InstructionSetsAgree) {
         for (std::size_t i = 0; i < walk.arrivals().size; ++i) {
           outcome.push_back(static_cast<float>(walk.arrivals().slot[i]));
           outcome.push_back(walk.arrivals().length[i]);
-          outcome.push_back(walk.arrivals().n_x[i]);
+          outcome.push_back(walk.arrivals().n.x[i]);
         }
         for (std::size_t i = 0; i < walk.vertices().size; ++i) {
           outcome.push_back(walk.vertices().depth2[i]);

@@ -51,10 +51,8 @@ inline Estimate bsdf(const Ggx& ggx, double eta, Vec3 wo, Vec3 wi, std::uint64_t
                      int walks = 400'000) {
   constexpr float density = 1e9f;
   LightList light;
-  light.x.assign(LightList::size, static_cast<float>(wi.x));
-  light.y.assign(LightList::size, static_cast<float>(wi.y));
-  light.z.assign(LightList::size, static_cast<float>(wi.z));
-  light.pdf.assign(LightList::size, density);
+  for (std::size_t i = 0; i < LightList::size; ++i) light.direction.set(i, wi);
+  light.pdf.fill(density);
   light.radiance.assign(LightList::size, {1, 1, 1});
   const BatchInterface interface { float(ggx.alpha), float(eta), wi.z > 0 };
   auto batch = std::make_unique<MicrosurfaceBatch>();

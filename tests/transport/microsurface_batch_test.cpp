@@ -50,7 +50,7 @@ Estimate light_of(double alpha, double eta, bool from_outside, Vec3 wo, std::uin
         sum += lit.share[i] * lights.radiance[lit.light[i]].g;
       const MicrosurfaceBatch::Sent& sent = batch->sent();
       for (std::size_t i = 0; i < sent.size; ++i) {
-        const EnvironmentValue light = image.value_from({sent.x[i], sent.y[i], sent.z[i]});
+        const EnvironmentValue light = image.value_from(sent.direction[i]);
         const double sought = lights_each * light.pdf;
         sum += sent.weight[i] * light.radiance.g * sent.pdf[i] / (sent.pdf[i] + sought);
       }
@@ -103,7 +103,7 @@ TEST(MicrosurfaceBatch, SharesAreThoseOfASingleScatteringInClosedForm) {
         }
         double expected = 0;
         for (std::uint32_t l = 0; l < LightList::size; ++l) {
-          const Vec3 wi{lights.x[l], lights.y[l], lights.z[l]};
+          const Vec3 wi = lights.direction[l];
           if ((wi.z > 0) != from_outside) continue;
           const LobeValue value = single_scattering(Ggx{alpha}, eta, wo, wi);
           if (value.f_cos > 0)

@@ -77,7 +77,7 @@ void add_batch(Histogram& histogram, double alpha, double eta, Vec3 wo, std::uin
     batch->collide(interface, LightList(), 0);
     const MicrosurfaceBatch::Sent& sent = batch->sent();
     for (std::size_t i = 0; i < sent.size; ++i)
-      walks[sent.slot[i]][bin_of({sent.x[i], sent.y[i], sent.z[i]})] += sent.weight[i];
+      walks[sent.slot[i]][bin_of(sent.direction[i])] += sent.weight[i];
   }
   for (std::size_t i = 0; i < walks.size(); ++i) {
     if (batch->inward_weight(i) > 0) walks[i][bin_of(batch->inward(i))] += batch->inward_weight(i);

@@ -26,15 +26,9 @@ TEST(RoughConnections, TheDensityOfAWayIntegratesToOne) {
       int ways = 0;
       auto batch = std::make_unique<RoughWays>();
       for (int repeat = 0; repeat < 12000; ++repeat) {
-        batch->size = RoughExitBatch::capacity;
-        for (std::size_t i = 0; i < batch->size; ++i) {
-          const Vec3 d = sample_isotropic(rng);
-          batch->up_x[i] = float(up.x), batch->up_y[i] = float(up.y), batch->up_z[i] = float(up.z);
-          batch->depth2[i] = float(1 - rho * rho);
-          batch->light_x[i] = float(light.x), batch->light_y[i] = float(light.y);
-          batch->light_z[i] = float(light.z);
-          batch->d_x[i] = float(d.x), batch->d_y[i] = float(d.y), batch->d_z[i] = float(d.z);
-        }
+        batch->size = 0;
+        while (batch->size < RoughWays::capacity)
+          batch->push(rho * up, 1 - rho * rho, sample_isotropic(rng), light);
         densities_of({1.5f, alpha, 1, 0}, *batch);
         for (std::size_t i = 0; i < batch->size; ++i, ++ways) {
           const double ratio = 4 * M_PI * batch->density[i];
@@ -52,19 +46,14 @@ TEST(RoughConnections, TheDensityOfAWayIntegratesToOne) {
 TEST(RoughConnections, InstructionSetsAgree) {
   auto batch = std::make_unique<RoughConnections>();
   Rng rng(2);
-  for (std::size_t i = 0; i < RoughExitBatch::capacity; ++i) {
+  while (batch->size < RoughConnections::capacity) {
     const Vec3 up = sample_isotropic(rng), light = sample_isotropic(rng), d = sample_isotropic(rng);
     const double rho = 1 - 0.5 * std::pow(rng.uniform(), 3);
-    batch->up_x[i] = float(up.x), batch->up_y[i] = float(up.y), batch->up_z[i] = float(up.z);
-    batch->depth2[i] = float(1 - rho * rho);
-    batch->light_x[i] = float(light.x), batch->light_y[i] = float(light.y);
-    batch->light_z[i] = float(light.z);
-    batch->d_x[i] = float(d.x), batch->d_y[i] = float(d.y), batch->d_z[i] = float(d.z);
+    const std::size_t i = batch->push(rho * up, 1 - rho * rho, d, light);
     batch->light_pdf[i] = 0.1f;
-    batch->key_low[i] = static_cast<std::uint32_t>(rng.bits());
+    batch->random.start(i, rng.bits());
   }
-  batch->size = RoughExitBatch::capacity;
-  std::map<std::string, RoughExitBatch::Floats> shares;
+  std::map<std::string, RoughConnections::Floats> shares;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().DeInit();

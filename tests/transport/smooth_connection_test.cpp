@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "renderer/optics/fresnel.h"
-#include "renderer/transport/sphere/smooth_exits_batch.h"
+#include "renderer/transport/sphere/smooth_lights_batch.h"
 #include "tests/support/scenes.h"
 
 namespace translucube::test {
@@ -141,9 +141,7 @@ void fill(SmoothExitBatch& batch, double rho, Rng& rng) {
   batch.size = 0;
   const Vec3 p = rho * random_direction(rng), axis = random_direction(rng);
   for (std::size_t i = 0; i < SmoothExitBatch::capacity; ++i) {
-    batch.axis_x[i] = static_cast<float>(axis.x);
-    batch.axis_y[i] = static_cast<float>(axis.y);
-    batch.axis_z[i] = static_cast<float>(axis.z);
+    batch.axis.set(i, axis);
     batch.choice[i] = static_cast<float>(rng.uniform());
     batch.drawn[i] = static_cast<float>(rng.uniform());
     batch.turn[i] = static_cast<float>(rng.uniform());
@@ -227,12 +225,11 @@ TEST(SmoothExits, AChosenLightIsOneOfTheListTurnedAboutTheAxis) {
   fill(*batch, 0.9, rng);
   choose_lights({1.5f, 1, 0}, *lights, 60, *batch);
   for (std::size_t i = 0; i < batch->size; ++i) {
-    const Vec3 axis{batch->axis_x[i], batch->axis_y[i], batch->axis_z[i]};
-    const Vec3 light{batch->light_x[i], batch->light_y[i], batch->light_z[i]};
-    const Vec3 original = directions[batch->light[i]];
+    const Vec3 axis = batch->axis[i], light = batch->light[i];
+    const Vec3 original = directions[batch->chosen[i]];
     EXPECT_NEAR(length(light), 1, 1e-5);
     EXPECT_NEAR(dot(light, axis), dot(original, axis), 1e-5);
-    const double stratum = double(std::size_t(batch->light[i]) / LightStrata::positions);
+    const double stratum = double(batch->chosen[i] / LightStrata::positions);
     const double turn = 2 * std::numbers::pi * (batch->turn[i] + stratum / LightStrata::candidates);
     const Vec3 across = original - dot(original, axis) * axis;
     EXPECT_NEAR(dot(light, across), std::cos(turn) * length_squared(across), 1e-5);
@@ -295,7 +292,7 @@ TEST(SmoothExits, InstructionSetsChooseAndDrawTheSame) {
   for (const auto& [name, batch] : results) {
     int differ = 0;
     for (std::size_t i = 0; i < first.size; ++i) {
-      differ += batch->light[i] != first.light[i];
+      differ += batch->chosen[i] != first.chosen[i];
       EXPECT_NEAR(batch->drawn_share[i], first.drawn_share[i], 1e-5) << name;
       EXPECT_NEAR(batch->drawn_distance[i], first.drawn_distance[i], 1e-5) << name;
     }
@@ -303,8 +300,8 @@ TEST(SmoothExits, InstructionSetsChooseAndDrawTheSame) {
   }
   if (results.contains("AVX2") && results.contains("AVX3")) {
     const SmoothExitBatch &a = *results["AVX2"], &b = *results["AVX3"];
-    EXPECT_EQ(a.light, b.light);
-    EXPECT_EQ(a.light_x, b.light_x);
+    EXPECT_EQ(a.chosen, b.chosen);
+    EXPECT_TRUE(a.light == b.light);
     EXPECT_EQ(a.light_pdf, b.light_pdf);
     EXPECT_EQ(a.drawn_share, b.drawn_share);
     EXPECT_EQ(a.drawn_distance, b.drawn_distance);

@@ -25,7 +25,7 @@ class RoughConnector {
   WalkMedium walk_medium() const { return {medium_, active(), margin, falling}; }
 
   void start(Path&) {}
-  /// From collisions of walks; a vertex's slot is the index of its path.
+  /// Looks for light from collisions of walks; a vertex's slot is the index of its path.
   void connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths);
   /// Collects what is under way.
   void flush();
@@ -33,8 +33,8 @@ class RoughConnector {
   /// A path straight from path.vertex to the boundary, where it leaves towards `light` with a
   /// density `pdf` by its first collision.
   void push_way(const Path& path, Vec3 light, double pdf);
-  /// For the ways pushed, in their order: the density with which they go on towards the light over
-  /// the chance that connect() looked there; 0: it never does. Forgets them.
+  /// Tells, for the ways pushed and in their order, the density with which they go on towards the
+  /// light over the chance that connect() looked there; 0: it never does. Forgets them.
   const RoughWays::Floats& weigh_ways();
 
  private:
@@ -50,14 +50,12 @@ class RoughConnector {
     std::uint32_t pixel, light;
   };
 
-  static void place(RoughExitBatch& batch, Vec3 p, double depth2, Vec3 d, Vec3 light);
-
   Collector& collector_;
   const LightList& lights_;
   Medium medium_;
   RoughExitMedium exit_;
   RoughConnections connections_;
-  std::array<Waiting, RoughExitBatch::capacity> waiting_;
+  std::array<Waiting, RoughConnections::capacity> waiting_;
   RoughWays ways_;
   RoughWays::Floats walked_;  ///< the ways' densities, by the walk, over the chance to connect
 };

@@ -57,15 +57,11 @@ void SmoothConnector::connect(const SphereWalk::Vertices& vertices, std::span<co
     const float chance = vertices.chance[i];
     const std::uint32_t drawn = vertices.bits[i] & std::uint32_t{LightStrata::size - 1};
     const EnvironmentSample& light = lights_[drawn];
-    const Vec3 p{vertices.p_x[i], vertices.p_y[i], vertices.p_z[i]};
-    collector_.note("connect", p, {vertices.d_x[i], vertices.d_y[i], vertices.d_z[i]},
-                    path.length + vertices.length[i], path.weight);
+    collector_.note("connect", vertices.p[i], vertices.d[i], path.length + vertices.length[i],
+                    path.weight);
     SmoothExitBatch& near = near_.batch;
     if (near_alone()) {
-      const Vec3 axis = walks_[path.start].axis;
-      near.axis_x[near.size] = static_cast<float>(axis.x);
-      near.axis_y[near.size] = static_cast<float>(axis.y);
-      near.axis_z[near.size] = static_cast<float>(axis.z);
+      near.axis.set(near.size, walks_[path.start].axis);
       near.choice[near.size] = vertices.u[i];
       near.drawn[near.size] = vertices.v[i];
       near.turn[near.size] = vertices.w[i];
@@ -74,7 +70,7 @@ void SmoothConnector::connect(const SphereWalk::Vertices& vertices, std::span<co
       push(near_, vertices, i, path, weight, drawn, light.direction, chance * light.value.pdf);
     }
     if (near.size == SmoothExitBatch::capacity) flush_near();
-    if (!far || !reaches_far(SmoothExits(ior_, p, vertices.depth2[i]))) continue;
+    if (!far || !reaches_far(SmoothExits(ior_, vertices.p[i], vertices.depth2[i]))) continue;
     push(far_, vertices, i, path, weight, drawn, light.direction, chance * light.value.pdf);
     if (far_.batch.size == SmoothExitBatch::capacity) flush_far();
   }
@@ -85,8 +81,7 @@ void SmoothConnector::push(Queue& queue, const SphereWalk::Vertices& vertices, s
                            double pdf) {
   queue.waiting[queue.batch.size] = {path.length + vertices.length[i], weight, path.pixel,
                                      path.start, light};
-  queue.batch.push({vertices.p_x[i], vertices.p_y[i], vertices.p_z[i]}, vertices.depth2[i],
-                   {vertices.d_x[i], vertices.d_y[i], vertices.d_z[i]}, direction, pdf);
+  queue.batch.push(vertices.p[i], vertices.depth2[i], vertices.d[i], direction, pdf);
 }
 
 double SmoothConnector::pdf(const Path& path) const {
@@ -114,25 +109,30 @@ void SmoothConnector::flush_far() {
   far_.batch.size = 0;
 }
 
+std::optional<SmoothConnector::WayOut> SmoothConnector::way_out(const SmoothExitBatch& batch,
+                                                                std::size_t i, Vec3 towards,
+                                                                ExitBranch branch,
+                                                                Division division) const {
+  if (batch.share[i] == 0) return {};
+  if (batch.share[i] > 0) return WayOut{batch.share[i], batch.distance[i], batch.normal[i]};
+  // Not found, or not finite: sought in double precision.
+  const auto exit = batch.exits(i, ior_).towards(towards, branch);
+  if (!exit) return {};
+  return WayOut{share_of(medium_, ior_, *exit, batch.d[i], batch.light_pdf[i], division),
+                exit->distance, batch.vertex(i) + exit->distance * exit->d};
+}
+
 void SmoothConnector::collect_balanced(Queue& queue, ExitBranch branch) {
   SmoothExitBatch& batch = queue.batch;
   find_exits(exit_medium(), branch, Division::balanced, batch);
   for (std::size_t i = 0; i < batch.size; ++i) {
     const Waiting& from = queue.waiting[i];
     const EnvironmentSample& light = lights_[from.light];
-    double share = batch.share[i], distance = batch.distance[i];
-    Vec3 normal{batch.normal_x[i], batch.normal_y[i], batch.normal_z[i]};
-    if (share == 0) continue;
-    if (!(share > 0)) {  // not found, or not finite: sought in double precision
-      const auto exit = batch.exits(i, ior_).towards(light.direction, branch);
-      if (!exit) continue;
-      share = share_of(medium_, ior_, *exit, batch.in(i), batch.light_pdf[i], Division::balanced);
-      distance = exit->distance;
-      normal = batch.vertex(i) + distance * exit->d;
-    }
-    const Rgb brought = light.value.radiance - expected(normal, from.walk) * far_share;
-    collector_.collect(from.pixel, from.length + distance, 0,
-                       brought * static_cast<float>(from.weight * share));
+    const auto way = way_out(batch, i, light.direction, branch, Division::balanced);
+    if (!way) continue;
+    const Rgb brought = light.value.radiance - expected(way->normal, from.walk) * far_share;
+    collector_.collect(from.pixel, from.length + way->distance, 0,
+                       brought * static_cast<float>(from.weight * way->share));
   }
 }
 
@@ -145,26 +145,17 @@ void SmoothConnector::collect_near(Queue& queue) {
     const Waiting& from = queue.waiting[i];
     const Walk& walk = walks_[from.walk];
     // What the walk carries of the light that leaves from here is taken away.
-    const auto up = static_cast<float>(batch.up_x[i] * walk.axis.x + batch.up_y[i] * walk.axis.y +
-                                       batch.up_z[i] * walk.axis.z);
+    const auto up = static_cast<float>(dot(batch.up[i], walk.axis));
     const float out = batch.drawn_cosine[i];
     const Rgb carried = walk.expected[0] + walk.expected[1] * (up * out) +
                         walk.expected[2] * (legendre2(up) * legendre2(out));
     collector_.collect_carried(from.pixel, from.length + batch.drawn_distance[i], 0,
                                carried * (-from.weight * batch.drawn_share[i]));
-    const EnvironmentSample& light = lights_[batch.light[i]];
-    double share = batch.share[i], distance = batch.distance[i];
-    if (share == 0) continue;
-    if (!(share > 0)) {  // not found, or not finite: sought in double precision
-      const Vec3 w{batch.light_x[i], batch.light_y[i], batch.light_z[i]};
-      const auto exit = batch.exits(i, ior_).towards(w, ExitBranch::near);
-      if (!exit) continue;
-      share = share_of(medium_, ior_, *exit, batch.in(i), batch.light_pdf[i], Division::connected);
-      distance = exit->distance;
-    }
-    collector_.collect(
-        from.pixel, from.length + distance, 0,
-        light.value.radiance * static_cast<float>(from.weight * share / light.value.pdf));
+    const auto way = way_out(batch, i, batch.light[i], ExitBranch::near, Division::connected);
+    if (!way) continue;
+    const EnvironmentValue& light = lights_[batch.chosen[i]].value;
+    collector_.collect(from.pixel, from.length + way->distance, 0,
+                       light.radiance * static_cast<float>(from.weight * way->share / light.pdf));
   }
 }
 

@@ -15,17 +15,18 @@
 // from are seen from sixteen of them.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "renderer/transport/collector.h"
 #include "renderer/transport/sphere/smooth_exits.h"
-#include "renderer/transport/sphere/smooth_exits_batch.h"
+#include "renderer/transport/sphere/smooth_lights_batch.h"
 #include "renderer/transport/sphere/sphere_walk.h"
 
 namespace translucube {
 
-/// For the bodies that do not connect.
+/// What bodies have instead that do not connect.
 struct NoConnector {
   NoConnector(const Scene&, Collector&, std::uint64_t) {}
   static constexpr bool active() { return false; }
@@ -46,10 +47,10 @@ class SmoothConnector {
 
   /// Before the first connection of a path: its walk starts at path.p.
   void start(Path& path);
-  /// From collisions of walks; a vertex's slot is the index of its path.
+  /// Looks for light from collisions of walks; a vertex's slot is the index of its path.
   void connect(const SphereWalk::Vertices& vertices, std::span<const Path> paths);
-  /// Of a path that arrived straight from path.vertex: the density of the direction in
-  /// which it goes on outside, over the chance that connect() looked there; 0: it never does.
+  /// For a path that arrived straight from path.vertex, the density of the direction in which it
+  /// goes on outside, over the chance that connect() looked there; 0: it never does.
   double pdf(const Path& path) const;
   /// Collects what is under way.
   void flush() {
@@ -57,8 +58,8 @@ class SmoothConnector {
     flush_far();
   }
 
-  /// Of that, what a walk carries that balances its own way out with connections: on the far side,
-  /// and where scattering has a direction.
+  /// The share of the expected light that a walk carries which balances its own way out with
+  /// connections: on the far side, and where scattering has a direction.
   static constexpr float far_share = 0.7f;
   /// The light that is expected at a place with normal n, as radiance.
   Rgb expected(Vec3 n, std::uint32_t walk_index) const {
@@ -109,6 +110,14 @@ class SmoothConnector {
   /// for, per solid angle.
   static void push(Queue& queue, const SphereWalk::Vertices& vertices, std::size_t i,
                    const Path& path, float weight, std::uint32_t light, Vec3 direction, double pdf);
+  /// Where light on its way out brings a share of the vertex's light.
+  struct WayOut {
+    double share, distance;
+    Vec3 normal;  ///< where it leaves
+  };
+  /// What find_exits() found for a vertex, in double precision where single did not.
+  std::optional<WayOut> way_out(const SmoothExitBatch& batch, std::size_t i, Vec3 towards,
+                                ExitBranch branch, Division division) const;
   void flush_near();
   void flush_far();
   void collect_balanced(Queue& queue, ExitBranch branch);

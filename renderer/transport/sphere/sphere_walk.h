@@ -5,11 +5,9 @@
 // direction, then its next free flight. Where a body is dense all happens close to the boundary, so
 // the depth is kept beside the position in a form that does not cancel: 1 - |p|^2.
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
+#include <cmath>
 
-#include "renderer/base/vec.h"
+#include "renderer/base/batch.h"
 #include "renderer/optics/medium.h"
 
 namespace translucube {
@@ -37,36 +35,33 @@ struct WalkMedium {
 
 class SphereWalk {
  public:
-  static constexpr std::size_t capacity = 1024;  ///< a multiple of every register's lanes
-  /// So that equal places of two arrays do not fall into the same set of a cache.
-  static constexpr std::size_t padding = 16;
-  using Floats = std::array<float, capacity + padding>;
-  using Integers = std::array<std::uint32_t, capacity + padding>;
+  static constexpr std::size_t capacity = 1024;
 
-  /// Walks under way (structure of arrays). `length` is counted from their push.
-  struct Walking {
-    std::size_t size = 0;
+  /// Walks under way. `length` is counted from their push.
+  struct Walking : Batch<capacity> {
     Integers slot;
-    Integers key_low, key_high, drawn;  ///< random numbers: a hash of the key and a count
-    Floats p_x, p_y, p_z, depth2, d_x, d_y, d_z, length;
+    Streams random;
+    Vectors p, d;
+    Floats depth2, length;
     Floats colliding;  ///< 1 at a collision, 0 where a flight comes next
   };
   /// Collisions that look for light, before their new direction is chosen.
-  struct Vertices {
-    std::size_t size = 0;
+  struct Vertices : Batch<capacity> {
     Integers slot, bits;
-    Floats p_x, p_y, p_z, depth2, d_x, d_y, d_z, length;
+    Vectors p, d;
+    Floats depth2, length;
     Floats chance;   ///< with which they do
     Floats u, v, w;  ///< numbers uniform in [0, 1)
   };
   /// Walks that have come to the boundary.
-  struct Arrivals {
-    std::size_t size = 0;
+  struct Arrivals : Batch<capacity> {
     Integers slot;
-    Floats n_x, n_y, n_z, d_x, d_y, d_z, length;
-    // Of the last flight: where it began, its length, and the density of its direction per solid
+    Vectors n, d;
+    Floats length;
+    // The last flight: where it began, its length, and the density of its direction per solid
     // angle if light was looked for from there with the direction still open; else 0.
-    Floats from_x, from_y, from_z, from_depth2, flight, phase;
+    Vectors from;
+    Floats from_depth2, flight, phase;
   };
 
   /// A walk from p (depth2 = 1 - |p|^2) along d; `colliding`: at a collision, d the direction in

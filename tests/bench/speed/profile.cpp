@@ -238,12 +238,8 @@ Table one_by_one(Run& run) {
   };
   auto lookups = std::make_unique<EnvironmentBatch>();
   measure_batch("environment look-up, at random (SIMD)", EnvironmentBatch::capacity, [&] {
-    for (lookups->size = 0; lookups->size < EnvironmentBatch::capacity; ++lookups->size) {
-      const Vec3 d = sample_isotropic(rng);
-      lookups->x[lookups->size] = static_cast<float>(d.x);
-      lookups->y[lookups->size] = static_cast<float>(d.y);
-      lookups->z[lookups->size] = static_cast<float>(d.z);
-    }
+    for (lookups->size = 0; lookups->size < EnvironmentBatch::capacity; ++lookups->size)
+      lookups->direction.set(lookups->size, sample_isotropic(rng));
     lookups->look_up(environment);
     sink = lookups->value[7].pdf;
   });
