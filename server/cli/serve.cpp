@@ -29,7 +29,7 @@ namespace translucube::server {
 namespace {
 
 // All that was promised is on the disk at any time: what has not ended by then may be cut off.
-constexpr std::chrono::seconds longest_drain(8);
+constexpr std::chrono::seconds longest_shutdown(8);
 
 struct ServeOptions {
   std::string config;
@@ -133,7 +133,7 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
 
   signal.wait(0);
   spdlog::info("signal {}: shutting down", signal.load());
-  const Watchdog watchdog(longest_drain);
+  const Watchdog watchdog(longest_shutdown);
   service.shut_down(std::chrono::seconds(config.drain_s));
   server.stop();
   http.join();

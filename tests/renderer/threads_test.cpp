@@ -37,11 +37,13 @@ TEST(Threads, TraceTheSameBitsHoweverMany) {
 
 // Its distance grid is filled by whoever comes first.
 TEST(Threads, TraceADenseMeshWithTheSameBitsHoweverMany) {
-  const auto mesh = [] { return build_mesh(knot(96, 24)).mesh; };
-  const Material dense = material(1.5, 0, 100);
-  const Film one = trace(half_lit(mesh(), dense), 4, 1),
-             five = trace(half_lit(mesh(), dense), 4, 5);
-  EXPECT_EQ(one.sum, five.sum);
+  const auto traced = [](int threads) {
+    Scene scene = half_lit_sphere();
+    scene.shape = build_mesh(knot(96, 24)).mesh;
+    scene.interior = make_interior(material(1.5, 0.2, 100), 1.0);
+    return trace(scene, 4, threads);
+  };
+  EXPECT_EQ(traced(1).sum, traced(5).sum);
 }
 
 TEST(Threads, TraceTheDipoleWithTheSameBitsHoweverMany) {

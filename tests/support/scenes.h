@@ -3,12 +3,15 @@
 // Scenes with known answers, built below the request: shapes, interfaces and lanes by hand.
 
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "renderer/render.h"
 #include "renderer/scene/scene.h"
 
 namespace translucube::test {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Estimate {
   double mean = 0, standard_error = 0;

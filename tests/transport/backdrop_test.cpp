@@ -14,8 +14,6 @@
 namespace translucube::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A map of radiance 1, of which the front half is seen.
 ImageEnvironment white_front() {
   Image image(64, 32);
@@ -36,18 +34,18 @@ struct Placed {
   AnyShape shape;
   double back;
 };
-std::vector<Placed> bodies() {
+std::vector<Placed> placed_bodies() {
   return {{Sphere{}, -1}, {make_box({0.7, 0.6, 0.1}), -0.1}, {Bowl(0.8), -1}};
 }
 
-void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
+void expect_backdrop_furnaces(std::uint32_t samples, int size, double largest_error) {
   struct Setting {
     double distance;
     bool image;  ///< the environment: a map of radiance 1, or the same from everywhere
   };
   for (const BackdropKind kind : {BackdropKind::light_table, BackdropKind::print})
     for (const auto& [distance, image] : {Setting{0, false}, Setting{0.3, true}})
-      for (const Placed& placed : bodies())
+      for (const Placed& placed : placed_bodies())
         for (const Material& m :
              {material(1.5, 0, 0), material(1.5, 0, 4), material(1.5, 0.3, 0),
               material(1.5, 0.3, 4), material(1.5, 0, infinity), material(1.5, 0.3, infinity)}) {
@@ -69,9 +67,11 @@ void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
         }
 }
 
-TEST(WhiteFurnace, BeforeAWhiteBackdropAllVanishes) { expect_furnaces(32, 12, 1.2e-2); }
+TEST(WhiteFurnace, BeforeAWhiteBackdropAllVanishes) { expect_backdrop_furnaces(32, 12, 1.2e-2); }
 
-TEST(LongWhiteFurnace, BeforeAWhiteBackdropAllVanishes) { expect_furnaces(1024, 24, 1e-3); }
+TEST(LongWhiteFurnace, BeforeAWhiteBackdropAllVanishes) {
+  expect_backdrop_furnaces(1024, 24, 1e-3);
+}
 
 /// A slab of thickness 1 on a backdrop, seen along its normal; the light comes from the
 /// backdrop alone or, on a print, from all around.
@@ -160,7 +160,7 @@ ImageEnvironment uneven_front() {
 TEST(Backdrop, UnderUnevenLightTheFurnaceOfOneChannelVanishes) {
   // What looks for light, where any channel is bright, must know what the backdrop hides.
   for (const BackdropKind kind : {BackdropKind::light_table, BackdropKind::print})
-    for (const Placed& placed : bodies())
+    for (const Placed& placed : placed_bodies())
       for (const Material& m : {material(1.5, 0, 3), material(1.5, 0.4, 3), material(1.5, 0.4, 0),
                                 material(1.5, 0, infinity)}) {
         Scene scene = body(placed.shape, m, 6);

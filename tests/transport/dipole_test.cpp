@@ -22,8 +22,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// Jensen's closed form (2001, section 2.4), from the albedo alone.
 double diffuse_reflectance(double albedo, double ior) {
   const double internal = 1 - (1 - diffuse_fresnel_outside(ior)) / (ior * ior);

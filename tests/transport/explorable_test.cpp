@@ -1,12 +1,11 @@
 // Explorable renders against renders with exact lanes of the same paths.
 
-#include "renderer/film/explorable_develop.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <numeric>
 
+#include "renderer/film/explorable_develop.h"
 #include "renderer/film/film_bytes.h"
 #include "renderer/film/film_error.h"
 #include "renderer/optics/material_cube.h"

@@ -33,8 +33,6 @@ void expect_near(const Estimate& a, const Estimate& b, double step, const std::s
   EXPECT_LT(error, 5e-3) << what;
 }
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 TEST(Limit, OfInfiniteAbsorptionIsTheBlackBody) {
   for (const double alpha : {0.0, 0.3})
     for (const double sigma_s : {0.0, 3.0})

@@ -126,7 +126,7 @@ std::vector<Material> materials_of_the_furnace() {
           material(1.5, 0, std::numeric_limits<double>::infinity())};
 }
 
-void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
+void expect_object_furnaces(std::uint32_t samples, int size, double largest_error) {
   for (const Body& which : bodies())
     for (const Material& m : materials_of_the_furnace()) {
       Scene scene = body(which.shape, m);
@@ -144,9 +144,9 @@ void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
     }
 }
 
-TEST(WhiteFurnace, PlatesBoxesWedgesAndBowlsVanish) { expect_furnaces(32, 16, 4e-3); }
+TEST(WhiteFurnace, PlatesBoxesWedgesAndBowlsVanish) { expect_object_furnaces(32, 16, 4e-3); }
 
-TEST(LongWhiteFurnace, PlatesBoxesWedgesAndBowlsVanish) { expect_furnaces(2048, 24, 3e-4); }
+TEST(LongWhiteFurnace, PlatesBoxesWedgesAndBowlsVanish) { expect_object_furnaces(2048, 24, 3e-4); }
 
 /// The length inside of isotropic light, over the volume times ior^2: light that leaves and comes
 /// back counts on. 1, as every ray of diffuse light has 4 V / S ior^2 in the mean.

@@ -10,15 +10,13 @@
 namespace translucube::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 Scene oiled(AnyShape shape, const Material& m, double offset, std::uint64_t seed = 1) {
   Scene scene = body(std::move(shape), m, seed);
   scene.oiled = OiledPart{{1, 0, 0}, offset};
   return scene;
 }
 
-void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
+void expect_oiled_furnaces(std::uint32_t samples, int size, double largest_error) {
   const AnyShape shapes[] = {Sphere{}, make_box({0.6, 0.5, 0.2}), Bowl(0.8),
                              build_mesh(icosphere(3)).mesh};
   for (const AnyShape& shape : shapes)
@@ -36,9 +34,9 @@ void expect_furnaces(std::uint32_t samples, int size, double largest_error) {
     }
 }
 
-TEST(WhiteFurnace, AHalfOiledBodyVanishes) { expect_furnaces(32, 16, 4e-3); }
+TEST(WhiteFurnace, AHalfOiledBodyVanishes) { expect_oiled_furnaces(32, 16, 4e-3); }
 
-TEST(LongWhiteFurnace, AHalfOiledBodyVanishes) { expect_furnaces(2048, 24, 3e-4); }
+TEST(LongWhiteFurnace, AHalfOiledBodyVanishes) { expect_oiled_furnaces(2048, 24, 3e-4); }
 
 TEST(MeanPathLength, UnderAFilmOverHalfOfASphereIsTheSame) {
   // The film anywhere: then parallel light over the disc is diffuse light over the surface.

@@ -27,8 +27,6 @@ Estimate mean_radiance(const Material& m, std::uint32_t samples) {
   return image_mean(trace(scene, samples));
 }
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 TEST(Pigment, OfInfiniteDensityIsGiovanellisHalfSpace) {
   // Albedo 0.9, ior 1.5, normal incidence: 0.2600 with the specular part (Giovanelli 1955).
   const Material m = pigment(1.5, 0, infinity, 1.0 / 9);
