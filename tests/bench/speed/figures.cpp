@@ -55,12 +55,15 @@ nlohmann::json to_json(const Report& report) {
 }
 
 Report report_from_json(const nlohmann::json& json) {
-  return {bench::report_from_json<Table>(json, [](const nlohmann::json& f) {
+  Report report;
+  static_cast<bench::Report<Table>&>(
+      report) = bench::report_from_json<Table>(json, [](const nlohmann::json& f) {
     const nlohmann::json& value = f.at("value");
     return Figure{
         f.at("row"), f.at("quantity"),       value.is_null() ? std::nan("") : value.get<double>(),
         "",          f.value("spread", 0.0), {}};
-  })};
+  });
+  return report;
 }
 
 std::vector<std::string> compare(const Report& fresh, const Report& committed) {

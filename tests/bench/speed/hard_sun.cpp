@@ -12,8 +12,7 @@ namespace translucube::speed {
 namespace {
 
 constexpr int sun_size = 96, references = 4;
-constexpr Quantity untrimmed_cost{"untrimmed × CPU s"}, trimmed_cost{"trimmed × CPU s"},
-    largest{"largest pixel / converged", "%.2f"};
+constexpr Quantity trimmed_cost{"trimmed × CPU s"}, largest{"largest pixel / converged", "%.2f"};
 
 struct Rendered {
   Image image;

@@ -15,7 +15,8 @@ using test::peer_material, test::peer_materials, test::peer_scene, test::PeerMat
 
 // Columns of several tables.
 inline constexpr Quantity ns_a_sample{"ns a sample", "%.0f"}, flights{"flights", "%.2f", 0.02},
-    connections{"connections", "%.2f", 0.02}, cpu_seconds{"CPU s", "%.3f"};
+    connections{"connections", "%.2f", 0.02}, cpu_seconds{"CPU s", "%.3f"},
+    untrimmed_cost{"untrimmed × CPU s"};
 
 /// The reference thickness of the service's default sphere [mm].
 inline constexpr double reference_mm = 10;

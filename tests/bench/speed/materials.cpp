@@ -7,8 +7,7 @@ namespace translucube::speed {
 namespace {
 
 constexpr Quantity trimmed{"relMSE", "%.3g", 0.3}, untrimmed{"untrimmed", "%.3g", 1.0},
-    cost{"relMSE × CPU s"}, untrimmed_cost{"untrimmed × CPU s"}, peer{"best peer", "%g"},
-    peers_over_ours{"peer / ours"};
+    cost{"relMSE × CPU s"}, peer{"best peer", "%g"}, peers_over_ours{"peer / ours"};
 constexpr Quantity events{"boundary events", "%.2f", 0.02}, red{"mean R", "%.4f"},
     green{"mean G", "%.4f"}, blue{"mean B", "%.4f"};
 
