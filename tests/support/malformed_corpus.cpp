@@ -80,17 +80,10 @@ std::vector<MalformedBody> malformed_bodies() {
     const auto entry = nlohmann::json::parse(line);
     const int status = entry.at("status");
     const bool several = entry.value("several_faults", false);
-<<<<<<< HEAD
     bodies.push_back(
         {entry.at("name").get<std::string>(),
          entry.contains("hex") ? bytes_of_hex(entry["hex"]) : entry.at("body").get<std::string>(),
          status, entry.value("pointer", ""), status == 422 && !several, several});
-=======
-    bodies.push_back(
-        {entry.at("name"),
-         entry.contains("hex") ? bytes_of_hex(entry["hex"]) : entry.at("body").get<std::string>(),
-         status, entry.value("pointer", ""), status == 422 && !several, several});
->>>>>>> part-c
   }
   if (bodies.empty()) throw std::runtime_error("cannot read " + file.string());
   add_generated(bodies);
