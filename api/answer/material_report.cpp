@@ -43,7 +43,7 @@ std::array<double, 3> color_through(const SpectralAbsorber& absorber, double sig
 }
 
 /// A body with an infinite absorber is black for every wavelength, also where the spectrum is zero:
-/// the axis ends in the black body (design.md section 1).
+/// the axis ends in the black body (docs/design.md section 1).
 std::array<double, 3> color_through_reference(const Material& material, double d) {
   if (std::isinf(material.coefficients.sigma_a_peak)) return {0, 0, 0};
   return std::visit(

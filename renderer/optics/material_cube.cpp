@@ -40,7 +40,7 @@ DerivedOptics derived_optics(const Coefficients& coefficients, double g) {
   DerivedOptics optics;
   optics.mean_free_path_mm = mean_free_path(sigma_s, sigma_a);
   optics.transport_mean_free_path_mm = mean_free_path(sigma_s * (1.0 - g), sigma_a);
-  // A body infinite in both is black: absorption wins, as there is no limit (design.md section 1).
+  // A body infinite in both is black: absorption wins, as there is no limit (docs/design.md section 1).
   if (sigma_s > 0 && !std::isinf(sigma_a))
     optics.albedo_at_peak = std::isinf(sigma_s) ? 1.0 : sigma_s / (sigma_s + sigma_a);
   return optics;

@@ -4,7 +4,7 @@
 
 namespace translucube {
 
-/// Cube coordinates to coefficients (design.md section 1), with d the reference thickness [mm]:
+/// Cube coordinates to coefficients (docs/design.md section 1), with d the reference thickness [mm]:
 ///   sigma_a,peak = -ln(1 - a) / d,   alpha = r^2,   sigma_s (1 - g) = 4/3 s / (1 - s) / d.
 /// Both ends are closed: a = 1 and s = 1 give +infinity.
 /// The scattering law is the two-stream diffuse reflectance s = 3/4 tau' / (1 + 3/4 tau') of a

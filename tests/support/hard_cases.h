@@ -1,6 +1,6 @@
 #pragma once
 
-// The hard cases of design.md section 6, in white furnaces: the right answer is 1 whatever the
+// The hard cases of docs/design.md section 6, in white furnaces: the right answer is 1 whatever the
 // body.
 
 #include <cstdint>

@@ -81,7 +81,7 @@ std::vector<MalformedBody> malformed_bodies() {
     const int status = entry.at("status");
     const bool several = entry.value("several_faults", false);
     bodies.push_back(
-        {entry.at("name"),
+        {entry.at("name").get<std::string>(),
          entry.contains("hex") ? bytes_of_hex(entry["hex"]) : entry.at("body").get<std::string>(),
          status, entry.value("pointer", ""), status == 422 && !several, several});
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The scene on which Cycles, Mitsuba 0.6 and pbrt-v4 were measured (shared/peers.md), and what is
+// The scene on which Cycles, Mitsuba 0.6 and pbrt-v4 were measured (docs/speed.md), and what is
 // read of its images.
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the truths of design.md section 6 are measured by: mean path lengths, slabs lit from one
+// What the truths of docs/design.md section 6 are measured by: mean path lengths, slabs lit from one
 // side, walks in a sphere.
 
 #include <array>

@@ -1,4 +1,4 @@
-// Hard cases (design.md section 6): finite, unbiased, bounded in time, and nothing truncated where
+// Hard cases (docs/design.md section 6): finite, unbiased, bounded in time, and nothing truncated where
 // no light is trapped. In a white furnace the right answer is 1 whatever the body.
 
 #include "tests/support/hard_cases.h"

@@ -39,7 +39,7 @@ TEST(WhiteFurnace, ARoughBodyVanishes) {
     }
 }
 
-// shared/peers.md: what single-scattering GGX keeps, by Mitsuba 0.6 and pbrt-v4 (which differ by up
+// What single-scattering GGX keeps, by Mitsuba 0.6 and pbrt-v4 (which differ by up
 // to .03 in their shadowing of transmission).
 TEST(WhiteFurnace, ARoughBodyKeepsWhatSingleScatteringKeeps) {
   const std::pair<double, double> kept[] = {

@@ -1,4 +1,4 @@
-// Plates, boxes, wedges and bowls: what their rays meet, and the truths of design.md section 6 in
+// Plates, boxes, wedges and bowls: what their rays meet, and the truths of docs/design.md section 6 in
 // them, with volumes in closed form.
 
 #include <gtest/gtest.h>

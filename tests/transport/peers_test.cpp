@@ -1,4 +1,4 @@
-// Rough interfaces that scatter once, as the exact-transport peers have them (shared/peers.md), and
+// Rough interfaces that scatter once, as the exact-transport peers have them (docs/speed.md), and
 // what they lose against those that scatter as often as it takes.
 
 #include "tests/support/peers.h"

@@ -1,4 +1,4 @@
-// The long forms of the truths of design.md section 6: 0.2 % at four standard errors.
+// The long forms of the truths of docs/design.md section 6: 0.2 % at four standard errors.
 
 #include <gtest/gtest.h>
 

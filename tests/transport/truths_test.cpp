@@ -1,4 +1,4 @@
-// The truths of design.md section 6 that the plain transport must meet: exact values, not our own
+// The truths of docs/design.md section 6 that the plain transport must meet: exact values, not our own
 // output.
 
 #include "tests/support/truths.h"

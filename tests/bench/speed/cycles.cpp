@@ -18,7 +18,7 @@ constexpr int cycles_size = 256;
 constexpr Quantity samples_of_cycles{"samples", "%.0f"}, theirs{"Cycles, relMSE × CPU s"},
     ours{"ours"}, cycles_over_ours{"Cycles / ours", "%.1f"}, brightness{"mean, of ours", "%.3f"};
 
-/// CPU ns of a sample in Cycles (shared/peers.md): tells how many samples are affordable.
+/// CPU ns of a sample in Cycles (docs/speed.md): tells how many samples are affordable.
 struct Expected {
   const char* material;
   double ns;

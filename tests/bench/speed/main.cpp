@@ -67,7 +67,7 @@ void add_own_options(CLI::App& app, Run& run) {
                  "camera samples in the sections `materials` and `single`")
       ->check(CLI::Range(1, 1 << 20));
   app.add_option("--sun", run.sun,
-                 "sunrise.exr; looked for in config/environments and ../shared/environments")
+                 "sunrise.exr; looked for in config/environments")
       ->check(CLI::ExistingFile);
   app.add_flag("--cycles", run.cycles,
                "render the same in Blender's Cycles, where it is installed");

@@ -12,8 +12,7 @@ namespace translucube::speed {
 
 /// sunrise.exr: as asked for, or where it may lie; empty where it is not.
 inline std::filesystem::path sunrise(const Run& run) {
-  for (const auto& file : {run.sun, in_repository("config/environments/sunrise.exr"),
-                           in_repository("../shared/environments/sunrise.exr")})
+  for (const auto& file : {run.sun, in_repository("config/environments/sunrise.exr")})
     if (std::filesystem::is_regular_file(file)) return file;
   return {};
 }
