@@ -210,8 +210,4 @@ ExplorableFilm explorable_film(const Scene& scene, const Film& film) {
   return explorable_film(scene.spread.value().bins(), scene.unit_mm, film);
 }
 
-Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int threads) {
-  return develop_explorable(film, scene.lanes.front(), threads);
-}
-
 }  // namespace translucube

@@ -96,8 +96,6 @@ std::optional<ExplorableBasis> explorable_basis(const Scene& scene);
 
 /// What is kept of an explorable scene's film.
 ExplorableFilm explorable_film(const Scene& scene, const Film& film);
-/// The picture through the material of the film's own scene.
-Image develop_explorable(const ExplorableFilm& film, const Scene& scene, int threads = 0);
 
 /// A fingerprint of the renderer's sources: results are kept by it.
 std::string_view engine_version();

@@ -6,16 +6,22 @@
 
 namespace translucube {
 
-SpectralLane::SpectralLane(const SpectralAbsorber& absorber, double sigma_a_peak)
-    : sigma_a_peak_(sigma_a_peak) {
+namespace {
+
+ColorOperatorTable operators_of(const SpectralAbsorber& absorber) {
   const std::vector<Wavelength> wavelengths = wavelengths_of(absorber);
   constexpr int octaves = 40;
-  table_ = ColorOperatorTable(octaves, [&](double x) {
+  return ColorOperatorTable(octaves, [&](double x) {
     return color_operator(wavelengths, [&](std::size_t i) {
       return std::exp(-wavelengths[i].relative_absorption * (x - 1));
     });
   });
 }
+
+}  // namespace
+
+SpectralLane::SpectralLane(const SpectralAbsorber& absorber, double sigma_a_peak)
+    : SpectralLane(sigma_a_peak, operators_of(absorber)) {}
 
 Lane make_lane(const Absorber& absorber, double peak) {
   if (peak == 0) return ClearLane{};

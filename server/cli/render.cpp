@@ -109,7 +109,7 @@ Image developed(const Scene& scene, const Film& film, const RenderOptions& optio
     write_atomically(*options.explorable_out, [&](const fs::path& temporary) {
       write_explorable(temporary, explorable, canonical);
     });
-  return develop_explorable(explorable, scene, options.setting.threads);
+  return develop_explorable(explorable, explorable_basis(scene)->own, options.setting.threads);
 }
 
 void check_places(const RenderOptions& options, const api::RenderRequest& request) {

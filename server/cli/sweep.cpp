@@ -60,7 +60,7 @@ std::string point_name(const api::Sweep& sweep, std::size_t point) {
 
 ImageForm form_of(ImageFormat format, const DisplayChoice& display, const ColorConfig& colors) {
   ImageQuery query{format, {}, {}, {}};
-  if (format != ImageFormat::exr) {
+  if (!is_scene_linear(format)) {
     query.display = display.display;
     query.view = display.view;
   }

@@ -109,7 +109,7 @@ TEST(ExplorableFilm, ThatIsStillBeingTracedDevelopsLikeOneThatIsKept) {
     for (std::size_t i = 0; i < a.pixels.size(); ++i)
       ASSERT_NEAR(a.pixels[i], b.pixels[i], 1e-3 * b.pixels[i] + 1e-5) << i;
   };
-  expect_alike(develop_shares(basis, film), develop_explorable(kept, *scene));
+  expect_alike(develop_shares(basis, film), develop_explorable(kept, basis.own));
   for (const Absorption& a : five_absorbers())
     expect_alike(develop_shares(basis, film, a.absorber, a.sigma_a_peak),
                  develop_explorable(kept, a.absorber, a.sigma_a_peak));
