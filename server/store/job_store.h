@@ -5,7 +5,7 @@
 //
 // To add a store: a class that is a JobStore in a folder beside sqlite/, a line in
 // open_job_store.cpp that tells its location from the others', and a line in the list of
-// tests/server/job_store_test.cpp, whose tests say what every store must do.
+// tests/server/store/job_store_test.cpp, whose tests say what every store must do.
 
 #include <cstdint>
 #include <memory>

@@ -13,10 +13,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "tests/server/load.h"
+#include "tests/server/http/wire.h"
+#include "tests/server/process/load.h"
 #include "tests/server/service.h"
 #include "tests/server/temp_folder.h"
-#include "tests/server/wire.h"
 #include "tests/support/malformed_corpus.h"
 
 namespace {

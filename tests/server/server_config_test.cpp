@@ -9,7 +9,7 @@
 
 #include "api/base/config_file.h"
 #include "api/request/catalog.h"
-#include "tests/server/process.h"
+#include "tests/server/process/process.h"
 #include "tests/server/temp_folder.h"
 #include "tests/support/repository.h"
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "tests/server/process.h"
+#include "tests/server/process/process.h"
 
 namespace translucube::server::test {
 

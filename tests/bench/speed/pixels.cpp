@@ -8,7 +8,7 @@
 
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
-#include "tests/server/process.h"
+#include "tests/server/process/process.h"
 
 namespace translucube::speed {
 namespace {

@@ -1,6 +1,6 @@
 // Clients that stay, stall and trickle, over a real socket.
 
-#include "tests/server/sockets.h"
+#include "tests/server/http/sockets.h"
 
 namespace translucube::server::test {
 namespace {

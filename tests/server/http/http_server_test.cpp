@@ -7,8 +7,8 @@
 
 #include "server/calls/front.h"
 #include "server/http/server.h"
-#include "tests/server/calls_under_test.h"
-#include "tests/server/wire.h"
+#include "tests/server/calls/calls_under_test.h"
+#include "tests/server/http/wire.h"
 #include "tests/support/malformed_corpus.h"
 
 namespace translucube::server::test {

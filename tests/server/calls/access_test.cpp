@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/server/process.h"
+#include "tests/server/process/process.h"
 #include "tests/server/temp_folder.h"
 
 namespace translucube::server::test {

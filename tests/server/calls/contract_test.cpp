@@ -2,8 +2,8 @@
 // it lists is provoked and its answer held against its schema.
 
 #include "picture/image_format.h"
-#include "tests/server/contract_service.h"
-#include "tests/server/sockets.h"
+#include "tests/server/calls/contract_service.h"
+#include "tests/server/http/sockets.h"
 
 namespace translucube::server::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "picture/image_io.h"
-#include "tests/server/calls_under_test.h"
+#include "tests/server/calls/calls_under_test.h"
 
 namespace translucube::server::test {
 namespace {

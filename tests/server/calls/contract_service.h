@@ -4,8 +4,8 @@
 // answer against the OpenAPI document.
 
 #include "server/calls/front.h"
-#include "tests/server/calls_under_test.h"
-#include "tests/server/contract.h"
+#include "tests/server/calls/calls_under_test.h"
+#include "tests/server/calls/contract.h"
 
 namespace translucube::server::test {
 

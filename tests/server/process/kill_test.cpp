@@ -4,7 +4,7 @@
 #include <set>
 
 #include "picture/image_io.h"
-#include "tests/server/siege.h"
+#include "tests/server/process/siege.h"
 
 namespace translucube::server::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "server/calls/web_files.h"
-#include "tests/server/calls_under_test.h"
+#include "tests/server/calls/calls_under_test.h"
 
 namespace translucube::server::test {
 namespace {

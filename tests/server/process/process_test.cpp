@@ -1,6 +1,6 @@
 // The binary itself: the service through a kill -9, and the command line's verbs.
 
-#include "tests/server/process.h"
+#include "tests/server/process/process.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 // Event streams, and who gets none, over a real socket.
 
-#include "tests/server/sockets.h"
+#include "tests/server/http/sockets.h"
 
 namespace translucube::server::test {
 namespace {

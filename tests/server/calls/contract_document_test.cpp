@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "server/calls/router.h"
-#include "tests/server/contract.h"
+#include "tests/server/calls/contract.h"
 
 namespace translucube::server::test {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "server/base/ids.h"
 #include "server/store/data_folder.h"
-#include "tests/server/stored.h"
+#include "tests/server/store/stored.h"
 #include "tests/server/temp_folder.h"
 
 namespace translucube::server {

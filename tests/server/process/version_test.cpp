@@ -10,7 +10,7 @@
 #include "api/openapi.h"
 #include "server/base/metrics.h"
 #include "tests/server/fixture.h"
-#include "tests/server/process.h"
+#include "tests/server/process/process.h"
 
 namespace translucube::server::test {
 namespace {

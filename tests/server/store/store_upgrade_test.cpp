@@ -26,7 +26,7 @@ constexpr const char* queued = "01KDVDNEW8NABJ6EB62CGSMDQ2";
 void write_version_1(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   const DataFolder data(folder);
-  std::ifstream file(in_repository("tests/server/store_v1.sql"));
+  std::ifstream file(in_repository("tests/server/store/store_v1.sql"));
   const std::string statements(std::istreambuf_iterator<char>(file), {});
   sql::Connection(data.store_file(), sql::Connection::Access::read_write).execute(statements);
   std::filesystem::create_directories(data.artifacts() / succeeded);

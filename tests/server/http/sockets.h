@@ -11,7 +11,7 @@
 
 #include "server/calls/front.h"
 #include "tests/server/fixture.h"
-#include "tests/server/wire.h"
+#include "tests/server/http/wire.h"
 
 namespace translucube::server::test {
 

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "tests/server/fixture.h"
-#include "tests/server/load.h"
+#include "tests/server/process/load.h"
 #include "tests/server/service.h"
 
 namespace translucube::server::test {
