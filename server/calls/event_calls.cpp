@@ -50,13 +50,15 @@ struct Stream {
     service.changes().watch(longest_block, [&] {
       const auto found = events_after(last);
       if (!found) return ended = true;  // removed
-      for (const Event& event : found->events) {
-        text += text_of(event);
-        last = event.number;
-      }
+      // Looked for after the events and told before them: what they say of a pass, and that the
+      // render has ended, is never told ahead of its picture.
       if (const std::uint32_t now = samples_to_see(); now > samples) {
         text += preview_text(now);
         samples = now;
+      }
+      for (const Event& event : found->events) {
+        text += text_of(event);
+        last = event.number;
       }
       ended = found->ended && found->events.empty();
       return ended || !text.empty();
