@@ -125,6 +125,15 @@ export function pictureHash(page) {
   });
 }
 
+/// The hash of the first picture that is not SHOWN: a page may show the same one once more.
+export async function anotherPicture(page, shown) {
+  for (const until = Date.now() + 10_000; Date.now() < until; await page.waitForTimeout(20)) {
+    const hash = await pictureHash(page);
+    if (hash !== shown) return hash;
+  }
+  throw new Error('the picture stays the same');
+}
+
 /// Milliseconds from each change to the picture that shows it, in order.
 export function pictureTimes(page) {
   return page.evaluate(() => performance.getEntriesByName('picture').map(({duration}) => duration));
