@@ -4,6 +4,7 @@
 // told to, and their bits say which pass, seed and pixel they are.
 
 #include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
 
 #include <atomic>
 #include <chrono>
@@ -28,6 +29,10 @@
 #include "tests/support/repository.h"
 
 namespace translucube::server::test {
+
+/// Made before any thread is, as main() does: spdlog is not instrumented, so ThreadSanitizer does not
+/// see that its registry is made once, by whoever logs first.
+inline const std::shared_ptr<spdlog::logger> made_before_threads = spdlog::default_logger();
 
 inline const std::string config_path = in_repository("config/service.json");
 
