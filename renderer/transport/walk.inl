@@ -144,7 +144,7 @@ void Tracer<Body>::start_walks(const Path& scattered, double weight, PathSampler
     // Its own numbers from here on: those that it was copied with have decided over others since.
     path.sampler = sampler.split();
     if (!path.survives()) continue;
-    path.roulette = roulette_of_scattered * path.weight;
+    path.play_below(roulette_of_scattered);
     collector_.note("scatter", path);
     connector_.start(path);
     collide(path);
