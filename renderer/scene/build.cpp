@@ -5,6 +5,7 @@
 #include "picture/image_io.h"
 #include "renderer/light/environment_cache.h"
 #include "renderer/scene/scene.h"
+#include "renderer/shape/file/mesh_file.h"
 #include "renderer/shape/mesh.h"
 
 namespace translucube {
@@ -21,8 +22,7 @@ PlacedShape make_shape(const SphereObject& sphere) { return {Sphere{}, {}, spher
 
 PlacedShape make_shape(const MeshObject& object) {
   try {
-    TriangleMesh mesh = read_mesh(object.file);
-    close_mesh(mesh);
+    const TriangleMesh mesh = read_mesh(object.file);
     const BuiltMesh built = build_mesh(mesh);
     const double back =
         std::ranges::min(mesh.vertices, {}, [](Vec3 v) { return v.z; }).z - built.center.z;
@@ -118,8 +118,7 @@ void use_dipole(const DipoleModel& model, const SceneSpec& spec, Scene& scene) {
 
 void check_mesh(const std::filesystem::path& file) {
   try {
-    TriangleMesh mesh = read_mesh(file);
-    close_mesh(mesh);
+    read_mesh(file);
   } catch (const MeshError& error) {
     throw SceneError(SceneError::Part::object, error.what());
   }

@@ -41,18 +41,20 @@ struct Index {
   std::string name;
   double ior, alpha;
 };
-const std::vector<Index> interfaces{{"matched", 1, 0},         {"smooth", 1.5, 0},
-                                    {"smooth diamond", 2.5, 0}, {"polished", 1.5, 1e-3},
-                                    {"satin", 1.5, 0.05},       {"rough", 1.5, 0.3},
-                                    {"roughest", 1.33, 1}};
+const std::vector<Index> interfaces{
+    {"matched", 1, 0},    {"smooth", 1.5, 0},  {"smooth diamond", 2.5, 0}, {"polished", 1.5, 1e-3},
+    {"satin", 1.5, 0.05}, {"rough", 1.5, 0.3}, {"roughest", 1.33, 1}};
 
 struct Interior {
   std::string name;
   double sigma_s, g = 0;
 };
-const std::vector<Interior> interiors{{"clear", 0},          {"hazy", 0.3},
-                                      {"milky", 4},          {"dense", 100},
-                                      {"forward", 4, 0.8},   {"backward", 4, -0.6},
+const std::vector<Interior> interiors{{"clear", 0},
+                                      {"hazy", 0.3},
+                                      {"milky", 4},
+                                      {"dense", 100},
+                                      {"forward", 4, 0.8},
+                                      {"backward", 4, -0.6},
                                       {"lambertian", infinity}};
 
 /// A map of radiance 1: the light is looked for all the same.
@@ -78,11 +80,13 @@ struct Decoration {
 const std::vector<Decoration> decorations{
     {"bare", [](Scene&, const Body&) {}, 6e-3},
     {"map", [](Scene& s, const Body&) { s.environment = white_map(EnvironmentSide::all); }, 2e-2},
-    {"half oiled", [](Scene& s, const Body&) { s.oiled = OiledPart{{1, 0, 0}, 0}; }, 6e-3},
-    {"touching a light table",
-     [](Scene& s, const Body& b) {
-       s.backdrop = white_backdrop(BackdropKind::light_table, b, 0);
+    {"half oiled",
+     [](Scene& s, const Body&) {
+       s.oiled = OiledPart{{1, 0, 0}, 0};
      },
+     6e-3},
+    {"touching a light table",
+     [](Scene& s, const Body& b) { s.backdrop = white_backdrop(BackdropKind::light_table, b, 0); },
      1.5e-2},
     {"touching a print",
      [](Scene& s, const Body& b) { s.backdrop = white_backdrop(BackdropKind::print, b, 0); },
@@ -129,9 +133,9 @@ void expect_furnaces(unsigned stride, std::uint32_t samples) {
         for (const Decoration& decoration : decorations) {
           if (hash_combine(5, ++row) % stride) continue;
           ++pictures;
-          Scene scene = body(which.shape,
-                             material(interface.ior, interface.alpha, interior.sigma_s, interior.g),
-                             row);
+          Scene scene =
+              body(which.shape,
+                   material(interface.ior, interface.alpha, interior.sigma_s, interior.g), row);
           decoration.add(scene, which);
           scene.width = scene.height = size;
           scene.camera = Camera({1.1, 2.2, 2.5}, {0, 0, 0}, {0, 1, 0}, 30, size, size);
