@@ -78,10 +78,20 @@ Environment make_environment(const EnvironmentSpec& spec, EnvironmentSide side,
     return UniformEnvironment{constant->radiance * static_cast<float>(spec.scale)};
   try {
     return *cache.get(std::get<ImageEnvironmentSpec>(spec.source).file,
-                      spec.rotation_deg * std::numbers::pi / 180, spec.scale, side);
+                      std::fmod(spec.rotation_deg, 360) * std::numbers::pi / 180, spec.scale,
+                      side);
   } catch (const ImageError& error) {
     throw SceneError(SceneError::Part::environment, error.what());
   }
+}
+
+Camera make_camera(const SceneSpec& spec, Vec3 position, Vec3 target) {
+  const Camera camera(position, target, spec.camera.up, spec.camera.vfov_deg, spec.width,
+                      spec.height);
+  if (!std::isfinite(length_squared(camera.forward) + length_squared(camera.right)))
+    throw SceneError(SceneError::Part::camera,
+                     "its position and target are one point as far away as they are");
+  return camera;
 }
 
 /// The least absorption that is developed from one tracing: a body that it leaves open is traced
@@ -146,8 +156,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   scene->environment = make_environment(
       spec.environment, spec.backdrop ? EnvironmentSide::front : EnvironmentSide::all,
       environments ? *environments : own);
-  scene->camera = Camera(to_body(spec.camera.position_mm), to_body(spec.camera.target_mm),
-                         spec.camera.up, spec.camera.vfov_deg, spec.width, spec.height);
+  scene->camera = make_camera(spec, to_body(spec.camera.position_mm), to_body(spec.camera.target_mm));
   scene->camera_inside =
       std::visit([&](const auto& s) { return s.inside(scene->camera.position); }, scene->shape);
   if (scene->backdrop && scene->camera.position.z <= scene->backdrop->z)

@@ -68,8 +68,8 @@ struct FakeRenderer {
     before_build(spec);
     const Picture picture{spec.width, spec.height,
                           1 + static_cast<int>(spec.more_absorptions.size()), spec.seed};
-    return {[this, picture](const Pass& pass, int, std::stop_token stop) {
-              return trace(picture, pass, stop);
+    return {[this, picture](const Pass& pass, int, const Patience& patience) {
+              return trace(picture, pass, patience.stop);
             },
             stats_of_fake, std::nullopt};
   }
