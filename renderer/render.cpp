@@ -113,7 +113,8 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
   return film;
 }
 
-Patience::Clock::time_point deadline_of(const TimeTarget& target, Patience::Clock::time_point start) {
+Patience::Clock::time_point deadline_of(const TimeTarget& target,
+                                        Patience::Clock::time_point start) {
   constexpr double longest = 1e9;  // seconds: what a clock can count
   return start + std::chrono::duration_cast<Patience::Clock::duration>(
                      std::chrono::duration<double>(std::clamp(target.seconds, 0.0, longest)));
@@ -158,6 +159,7 @@ RenderStats stats_of(const Scene& scene, const Film& film, double seconds, int t
   stats.threads = thread_count(threads);
   stats.relative_error = relative_error(film);
   stats.transport = transport_name(scene);
+  stats.camera_inside = scene.camera_inside;
   stats.nan_samples = film.counters.nan_samples;
   stats.truncated_energy =
       film.counters.camera_samples > 0

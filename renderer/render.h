@@ -54,7 +54,8 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
                                    const Patience& patience = {});
 
 /// When a time target is over that began at `start`.
-Patience::Clock::time_point deadline_of(const TimeTarget& target, Patience::Clock::time_point start);
+Patience::Clock::time_point deadline_of(const TimeTarget& target,
+                                        Patience::Clock::time_point start);
 
 /// True when the film meets the target. `seconds`: wall clock spent tracing so far.
 bool meets(const Quality& quality, const Film& film, double seconds);
@@ -79,6 +80,7 @@ struct RenderStats {
   int traced_images = 1;
   std::uint64_t nan_samples = 0;
   double truncated_energy = 0;  ///< mean per camera sample
+  bool camera_inside = false;   ///< the camera is in the body
 };
 
 struct RenderResult {

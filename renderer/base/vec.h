@@ -34,8 +34,8 @@ inline Vec3 normalize(Vec3 a) { return a * (1.0 / length(a)); }
 inline Vec3 direction_of(Vec3 v) {
   const double largest = std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
   const int exponent = std::ilogb(largest);
-  return normalize({std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent),
-                    std::scalbn(v.z, -exponent)});
+  return normalize(
+      {std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent), std::scalbn(v.z, -exponent)});
 }
 
 /// Linear RGB (Rec.709 primaries, D65 white), any scale, never clamped.

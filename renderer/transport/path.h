@@ -15,10 +15,10 @@ inline constexpr double roulette_of_scattered = 1.0 / 4;
 /// The threshold inside a clear body under a rough interface, relative to the weight that went in.
 inline constexpr double roulette_of_rough = 1.0 / 8;
 
-/// Each time that light comes back to the body (from a print, or across a hollow) its threshold begins
-/// anew, relative to what is left, and both branches are followed once more: where nothing absorbs,
-/// that multiplies paths without end. After so many returns the threshold is at least this one, of
-/// what the camera saw.
+/// Each time that light comes back to the body (from a print, or across a hollow) its threshold
+/// begins anew, relative to what is left, and both branches are followed once more: where nothing
+/// absorbs, that multiplies paths without end. After so many returns the threshold is at least this
+/// one, of what the camera saw.
 inline constexpr std::uint32_t returns_before_floor = 4;
 inline constexpr double roulette_of_returned = 1.0 / 16;
 

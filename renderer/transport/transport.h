@@ -46,9 +46,8 @@ void trace_body(const Shape& shape, const Scene& scene, const SampleRange& sampl
 /// given, receives a line for every event.
 inline void trace_tile(const Scene& scene, const SampleRange& samples, Tile& tile,
                        const Patience& patience, std::string* log = nullptr) {
-  std::visit(
-      [&](const auto& shape) { trace_body(shape, scene, samples, tile, patience, log); },
-      scene.shape);
+  std::visit([&](const auto& shape) { trace_body(shape, scene, samples, tile, patience, log); },
+             scene.shape);
 }
 
 }  // namespace translucube

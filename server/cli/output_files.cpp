@@ -120,7 +120,8 @@ void OutputFiles::write(const fs::path& file, std::string_view bytes) {
   write(file, [&](const fs::path& temporary) {
     OutputFile out(temporary);
     if (out.is_open()) out.write(bytes.data(), bytes.size(), 0);
-    if (const int error = out.finish()) throw FileError(file.string() + ": " + std::strerror(error));
+    if (const int error = out.finish())
+      throw FileError(file.string() + ": " + std::strerror(error));
   });
 }
 

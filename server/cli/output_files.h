@@ -25,8 +25,8 @@ class OutputFiles {
   /// can be written to, and where it is a file that the verb reads or writes already.
   void writes(const std::filesystem::path& file);
 
-  /// Has `writer` fill a temporary file beside `file`, which then takes its place. A failure is told
-  /// on standard error, by the file's name.
+  /// Has `writer` fill a temporary file beside `file`, which then takes its place. A failure is
+  /// told on standard error, by the file's name.
   void write(const std::filesystem::path& file,
              const std::function<void(const std::filesystem::path&)>& writer);
   void write(const std::filesystem::path& file, std::string_view bytes);

@@ -111,9 +111,19 @@ Image developed(const Scene& scene, const Film& film, const RenderOptions& optio
   return develop_explorable(explorable, explorable_basis(scene)->own, options.setting.threads);
 }
 
+/// What the picture shows but does not say.
+void note_surprises(const RenderStats& stats) {
+  if (stats.camera_inside) std::fputs("The camera is inside the body.\n", stderr);
+  constexpr double visible = 1e-3;
+  if (stats.truncated_energy > visible)
+    std::fprintf(stderr, "%.1f %% of the light was given up: its paths were too long.\n",
+                 100 * stats.truncated_energy);
+}
+
 void check_places(const RenderOptions& options, const api::RenderRequest& request,
                   OutputFiles& files) {
   files.reads(options.request);
+  if (!options.setting.config.empty()) files.reads(options.setting.config);
   if (const auto* mesh = std::get_if<api::MeshRequest>(&request.object)) files.reads(mesh->file);
   if (const auto* map = std::get_if<api::FileEnvironment>(&request.environment.source))
     files.reads(map->file);
@@ -147,6 +157,7 @@ int render_or_throw(const RenderOptions& options, const Interruption& interrupti
   }();
   if (result.stopped) return interruption.exit_status();
   refuse_nan(result.stats);
+  note_surprises(result.stats);
   const std::string canonical = api::canonical_json(request);
   write_outputs(outputs, developed(*scene, result.film, options, request, canonical, files), colors,
                 canonical, files);
