@@ -99,7 +99,7 @@ void read_colors(const Imf::Header& header, StoredPicture& stored) {
     throw ImageError("holds the code values of a display (" + space.substr(0, 64) + "), not light");
 }
 
-StoredPicture read_part(Imf::InputPart& part) {
+StoredPicture read_part(Imf::InputPart& part, std::size_t bytes) {
   const Imf::Header& header = part.header();
   check_kind(header);
   StoredPicture stored;
@@ -107,6 +107,7 @@ StoredPicture read_part(Imf::InputPart& part) {
   const Imath::Box2i& window = header.dataWindow();
   stored.width = window.max.x - window.min.x + 1;
   stored.height = window.max.y - window.min.y + 1;
+  check_not_cut_off(stored.width, stored.height, bytes);
   std::vector<std::string> light;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
     stored.channels.emplace_back(it.name());
@@ -141,7 +142,7 @@ StoredPicture read_stored_exr(std::span<const char> bytes) {
       if (file.header(i).hasType() && Imf::isDeepData(file.header(i).type()) && file.parts() == 1)
         throw ImageError("a deep or volume image, not a flat one");
     Imf::InputPart part(file, lit_part(file));
-    return read_part(part);
+    return read_part(part, bytes.size());
   } catch (const ImageError&) {
     throw;
   } catch (const std::bad_alloc&) {

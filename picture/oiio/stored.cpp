@@ -6,6 +6,8 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/thread.h>
 
+#include <mutex>
+
 #include "picture/light/tags.h"
 #include "picture/oiio/file.h"
 #include "picture/oiio/metadata.h"
@@ -68,9 +70,12 @@ void read_meaning(std::span<const char> bytes, LightFormat format, const OIIO::I
 void prepare_stored() {
   use_one_thread();
   // OpenImageIO makes its thread pool and its table of formats when first asked for them.
-  for (const LightFormat format : {LightFormat::png, LightFormat::jpeg, LightFormat::tiff})
-    OIIO::ImageInput::create(name_of(format));
-  OIIO::default_thread_pool();
+  static std::once_flag once;
+  std::call_once(once, [] {
+    for (const LightFormat format : {LightFormat::png, LightFormat::jpeg, LightFormat::tiff})
+      OIIO::ImageInput::create(name_of(format));
+    OIIO::default_thread_pool();
+  });
 }
 
 StoredPicture read_stored(std::span<const char> bytes, LightFormat format) {
@@ -87,6 +92,7 @@ StoredPicture read_stored(std::span<const char> bytes, LightFormat format) {
     throw ImageError("not a readable image (" + input->geterror() + ")");
   if (spec.deep || spec.depth > 1) throw ImageError("a deep or volume image, not a flat one");
   check_size({}, spec.width, spec.height);
+  check_not_cut_off(spec.width, spec.height, bytes.size());
   if (spec.nchannels <= 0 || spec.nchannels > 4)
     throw ImageError("has " + std::to_string(spec.nchannels) + " channels");
   StoredPicture stored;

@@ -118,7 +118,7 @@ class HeaderReader {
 
   void read_element(std::string_view line) {
     Element element{std::string(next_word(line, " \t")), 0, {}};
-    if (element.name.empty() || !read_integer(next_word(line, " \t"), element.count))
+    if (!is_name(element.name) || !read_integer(next_word(line, " \t"), element.count))
       fail_here("an element needs a name and a number");
     for (const Element& other : elements_)
       if (other.name == element.name) fail_here("the element " + element.name + " comes twice");
@@ -138,11 +138,18 @@ class HeaderReader {
     }
     property.type = scalar(type);
     property.name = next_word(line, " \t");
-    if (property.name.empty()) fail_here("a property needs a name");
+    if (!is_name(property.name)) fail_here("a property needs a name");
     constexpr std::size_t most = 256;
     auto& properties = elements_.back().properties;
     if (properties.size() == most) fail_here("more properties than " + std::to_string(most));
     properties.push_back(std::move(property));
+  }
+
+  /// What can be told in a message.
+  static bool is_name(std::string_view name) {
+    constexpr std::size_t longest = 64;
+    return !name.empty() && name.size() <= longest &&
+           std::ranges::all_of(name, [](unsigned char c) { return c > 32 && c < 127; });
   }
 
   Scalar scalar(std::string_view name) const {
