@@ -24,17 +24,20 @@ constexpr bool sanitized = true;  // its shadow memory and its reports need more
 constexpr bool sanitized = false;
 #endif
 
-bool limit(__rlimit_resource what, rlim_t most) {
-  const rlimit both{most, most};
-  return ::setrlimit(what, &both) == 0;
+/// Lowers a limit, or leaves it where it is lower.
+bool limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
+  rlimit now{};
+  if (::getrlimit(what, &now) != 0) return false;
+  hard = std::min(hard, now.rlim_max);
+  const rlimit next{std::min(soft, hard), hard};
+  return ::setrlimit(what, &next) == 0;
 }
+bool limit(__rlimit_resource what, rlim_t most) { return limit(what, most, most); }
 
 bool limit_resources(const SandboxLimits& limits) {
   // SIGXCPU at the soft limit tells the parent why.
-  const rlimit cpu{limits.cpu_seconds, limits.cpu_seconds + 1};
-  return ::setrlimit(RLIMIT_CPU, &cpu) == 0 && limit(RLIMIT_CORE, 0) &&
-         limit(RLIMIT_FSIZE, limits.answer_bytes) &&
-         (sanitized || limit(RLIMIT_AS, limits.memory_bytes));
+  return limit(RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1) && limit(RLIMIT_CORE, 0) &&
+         limit(RLIMIT_FSIZE, 0) && (sanitized || limit(RLIMIT_AS, limits.memory_bytes));
 }
 
 /// Where memory runs out on the machine, this process is the one to end.

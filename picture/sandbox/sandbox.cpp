@@ -3,21 +3,18 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <utility>
-
-extern "C" {  // which glibc 2.36's header forgets
-#include <sys/pidfd.h>
-}
 
 #include "picture/sandbox/answer.h"
 #include "picture/sandbox/confine.h"
@@ -37,6 +34,7 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int number() const { return number_; }
+  int release() { return std::exchange(number_, -1); }
   bool open() const { return number_ >= 0; }
 
  private:
@@ -119,23 +117,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Its status as waitpid() tells it; false where it took too long.
-  bool end_within(std::chrono::seconds longest, int& status) {
-    const Descriptor end(::pidfd_open(id_, 0));
-    if (!end.open()) throw FileUnavailable("no reader can be waited for: " + reason_of(errno));
-    const auto deadline = std::chrono::steady_clock::now() + longest;
-    while (true) {
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-          deadline - std::chrono::steady_clock::now());
-      if (left.count() <= 0) return false;
-      pollfd poller{end.number(), POLLIN, 0};
-      if (::poll(&poller, 1, static_cast<int>(left.count())) > 0) break;
-    }
-    status = wait_for_end();
-    return true;
-  }
-
- private:
+  /// Its status as waitpid() tells it.
   int wait_for_end() {
     int status = 0;
     while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
@@ -144,6 +126,7 @@ class Child {
     return status;
   }
 
+ private:
   pid_t id_ = 0;
   bool ended_ = false;
 };
@@ -158,26 +141,43 @@ std::string too_long(unsigned seconds) {
   return "takes longer than " + std::to_string(seconds) + " s to read";
 }
 
-}  // namespace
-
-SandboxAnswer::~SandboxAnswer() {
-  if (bytes_ != nullptr) ::munmap(const_cast<std::byte*>(bytes_), size_);
+/// What comes through a pipe until its other end is closed. A file would be simpler, but is bounded
+/// by the parent's own limit on files. Throws FileRefused.
+std::vector<std::byte> read_pipe(int pipe, const SandboxLimits& limits) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::size_t piece = 1 << 20;
+  const auto deadline = Clock::now() + std::chrono::seconds(limits.wall_seconds);
+  std::vector<std::byte> bytes;
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+    if (left.count() <= 0) throw FileRefused(too_long(limits.wall_seconds));
+    pollfd poller{pipe, POLLIN, 0};
+    if (::poll(&poller, 1, static_cast<int>(left.count())) <= 0) continue;
+    const std::size_t before = bytes.size();
+    if (before > limits.answer_bytes) throw FileRefused("larger than what can be kept of it");
+    bytes.resize(before + piece);
+    const ssize_t got = ::read(pipe, bytes.data() + before, piece);
+    bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+    if (got == 0) return bytes;
+    if (got < 0 && errno != EINTR) throw FileUnavailable(reason_of(errno));
+  }
 }
 
-SandboxAnswer::SandboxAnswer(SandboxAnswer&& other) noexcept
-    : bytes_(std::exchange(other.bytes_, nullptr)), size_(other.size_) {}
+}  // namespace
 
 SandboxAnswer read_in_sandbox(const std::string& kind, const fs::path& file,
                               const SandboxLimits& limits) {
   const Descriptor input = moved_up(open_file(file, limits));
-  const Descriptor answer = moved_up(::memfd_create("translucube answer", MFD_CLOEXEC));
-  if (!input.open() || !answer.open()) throw FileUnavailable(reason_of(errno));
-  int status = 0;
-  {
-    Child child(kind, input.number(), answer.number());
-    if (!child.end_within(std::chrono::seconds(limits.wall_seconds), status))
-      throw FileRefused(too_long(limits.wall_seconds));
-  }
+  std::array<int, 2> ends{-1, -1};
+  if (!input.open() || ::pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw FileUnavailable(reason_of(errno));
+  const Descriptor answer = moved_up(ends[0]);
+  std::optional<Descriptor> to_answer(std::in_place, moved_up(ends[1]).release());
+  if (!answer.open() || !to_answer->open()) throw FileUnavailable(reason_of(errno));
+  Child child(kind, input.number(), to_answer->number());
+  to_answer.reset();
+  SandboxAnswer result(read_pipe(answer.number(), limits));
+  const int status = child.wait_for_end();
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
     throw FileRefused(too_long(limits.cpu_seconds));
   if (WIFSIGNALED(status))
@@ -186,14 +186,8 @@ SandboxAnswer read_in_sandbox(const std::string& kind, const fs::path& file,
     throw FileUnavailable("this system does not let the reader give up its rights");
   if (WEXITSTATUS(status) == sandbox_no_answer)
     throw FileUnavailable("the reader could not read the file's bytes or write its answer");
-  struct stat size {};
-  if (::fstat(answer.number(), &size) != 0) throw FileUnavailable(reason_of(errno));
-  const auto bytes = static_cast<std::size_t>(size.st_size);
-  if (WEXITSTATUS(status) != 0 || bytes < sizeof(AnswerHead))
+  if (WEXITSTATUS(status) != 0 || result.bytes().size() < sizeof(AnswerHead))
     throw FileRefused("damaged: its reader gave no answer");
-  void* const mapped = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, answer.number(), 0);
-  if (mapped == MAP_FAILED) throw FileUnavailable(reason_of(errno));
-  SandboxAnswer result(static_cast<const std::byte*>(mapped), bytes);
   open_answer(result.bytes());
   return result;
 }

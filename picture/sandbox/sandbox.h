@@ -11,6 +11,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace translucube {
 
@@ -37,16 +39,12 @@ struct FileUnavailable : std::runtime_error {
 /// The answer of a process in the sandbox, which has ended.
 class SandboxAnswer {
  public:
-  SandboxAnswer(const std::byte* bytes, std::size_t size) : bytes_(bytes), size_(size) {}
-  ~SandboxAnswer();
-  SandboxAnswer(SandboxAnswer&& other) noexcept;
-  SandboxAnswer& operator=(SandboxAnswer&&) = delete;
+  explicit SandboxAnswer(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {}
 
-  std::span<const std::byte> bytes() const { return {bytes_, size_}; }
+  std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
-  const std::byte* bytes_;
-  std::size_t size_;
+  std::vector<std::byte> bytes_;
 };
 
 /// Has the reader's process read a file as a `kind` that it knows. Throws FileRefused where it

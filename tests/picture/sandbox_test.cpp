@@ -36,11 +36,13 @@ struct Ended {
 
 /// Runs `parse` as the reader would be run.
 Ended confined(const std::function<std::string()>& parse) {
-  const int file = ::memfd_create("file", 0), answer = ::memfd_create("answer", 0);
+  const int file = ::memfd_create("file", 0);
+  int answer[2];
+  EXPECT_EQ(::pipe(answer), 0);  // which holds what tests answer
   const pid_t child = ::fork();
   if (child == 0) {
     ::dup2(::fcntl(file, F_DUPFD, 20), sandbox_file);
-    ::dup2(::fcntl(answer, F_DUPFD, 20), sandbox_answer);
+    ::dup2(::fcntl(answer[1], F_DUPFD, 20), sandbox_answer);
     ::_exit(run_confined([](auto) {},
                          [&](auto, const std::function<void(const AnswerPieces&)>& write) {
                            const std::string text = parse();
@@ -49,10 +51,11 @@ Ended confined(const std::function<std::string()>& parse) {
   }
   Ended ended{};
   ::waitpid(child, &ended.status, 0);
-  std::vector<std::byte> bytes(static_cast<std::size_t>(::lseek(answer, 0, SEEK_END)));
-  [[maybe_unused]] const auto got = ::pread(answer, bytes.data(), bytes.size(), 0);
+  ::close(answer[1]);
+  std::vector<std::byte> bytes(1 << 16);
+  bytes.resize(static_cast<std::size_t>(::read(answer[0], bytes.data(), bytes.size())));
   ::close(file);
-  ::close(answer);
+  ::close(answer[0]);
   if (bytes.empty()) return ended;
   try {
     const auto text = open_answer(bytes);
