@@ -35,6 +35,8 @@ class Wire {
     return connected_;
   }
 
+  void end_sending() { ::shutdown(socket_.get(), SHUT_WR); }
+
   /// One answer, headers and body; what came of it by the end of the connection or of the time.
   std::string receive(int milliseconds = 15'000) {
     std::string text;
