@@ -12,7 +12,7 @@ corpus=build/fuzz/corpus findings=build/fuzz/findings
 mkdir -p "$findings"
 python3 tests/fuzz/make_corpus.py build/fuzz/seeds
 failed=0
-for name in render_request sweep_request headers; do
+for name in render_request sweep_request headers messages; do
   mkdir -p "$corpus/$name"
   echo "== fuzz: $name, $seconds s"
   build/fuzz/bin/fuzz_$name "$corpus/$name" "build/fuzz/seeds/$name" \
