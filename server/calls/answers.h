@@ -44,8 +44,8 @@ template <typename Get, typename Done>
 auto answer_after(CallContext& context, const HttpRequest& request, int seconds, bool& waited,
                   Get get, Done done) {
   auto result = get();
-  waited = false;
-  if (seconds <= 0 || !result || done(*result)) return result;
+  waited = !result || done(*result);
+  if (waited || seconds <= 0) return result;
   const Places::Place place = context.waiting.take();
   if (!place) return result;
   waited = true;

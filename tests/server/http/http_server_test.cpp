@@ -187,6 +187,17 @@ TEST(HttpServerTest, ABodyThatIsNotJsonOrIsCodedIsRefusedUnread) {
   EXPECT_EQ(type_of(served.client.Post("/v1/renders", form)), "unsupported-media-type");
 }
 
+TEST(HttpServerTest, AnEmptyIdempotencyKeyIsNoKey) {
+  Served served;
+  Wire wire(served.server.port());
+  const std::string body = small_request(4);
+  wire.send("POST /v1/renders HTTP/1.1\r\nHost: x\r\nIdempotency-Key:\r\nContent-Length: " +
+            std::to_string(body.size()) + "\r\n\r\n" + body);
+  const std::string answer = wire.receive();
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 422"));
+  EXPECT_THAT(answer, HasSubstr("Idempotency-Key"));
+}
+
 TEST(HttpServerTest, APostOrDeleteWithoutABodyIsNotWaitedFor) {
   Served served;
   const auto start = std::chrono::steady_clock::now();

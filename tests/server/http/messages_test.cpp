@@ -164,6 +164,12 @@ TEST(MessagesTest, HostsAndTargets) {
          {"OPTIONS * HTTP/1.1\r\n" + host + "\r\n", {200}, true}});
 }
 
+TEST(MessagesTest, AnEmptyOriginIsAnotherOne) {
+  check(Sockets(), {{post_with("Origin:\r\n", ""), {403}, true},
+                    {post_with("Origin: \r\nOrigin: http://localhost\r\n", ""), {403}, true},
+                    {post_with("Origin: http://localhost\r\n", ""), {200}, true}});
+}
+
 TEST(MessagesTest, Lengths) {
   const auto post = [](const std::string& length, const std::string& body) {
     return post_with("Content-Length: " + length + "\r\n", body);
