@@ -98,6 +98,8 @@ void BodyReader::take_data(std::string_view& bytes) {
     text_ += data;
   else if (text_.capacity() > 0)
     text_ = {};
+  if (received_ > longest_drain)
+    return refuse(ProblemCode::payload_too_large, "The body is too large.");
   if (left_ == 0) state_ = state_ == State::length ? State::whole : State::data_end;
 }
 

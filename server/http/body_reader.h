@@ -15,6 +15,10 @@ namespace translucube::server {
 
 class BodyReader {
  public:
+  /// What a client may send of a body that is too large, so that it gets to read the answer
+  /// [bytes].
+  static constexpr std::uint64_t longest_drain = std::uint64_t(1) << 30;
+
   /// Past `limit` bytes [of data] the body is read on, so that its end is found, but not kept.
   BodyReader(const Framing& framing, std::uint64_t limit)
       : state_(framing.chunked ? State::size_line : State::length),

@@ -83,7 +83,7 @@ void Lobby::add(Guest guest) {
       event.events |= EPOLLOUT;
   }
   event.data.fd = socket;
-  guest.held = guest.connection->held();
+  guest.held = guest.awaits == Awaits::body ? guest.connection->held() : 0;
   const std::lock_guard lock(mutex_);
   if (closed_) return;
   if (::epoll_ctl(epoll_.get(), EPOLL_CTL_MOD, socket, &event) != 0 &&

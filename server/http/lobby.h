@@ -25,7 +25,7 @@ class Lobby {
   /// What a connection gets to read before it is closed for a problem; it may have an exchange.
   using Refusal = std::function<std::string(const api::Problem&, const Connection&)>;
 
-  /// `most_held`: bytes of requests that have come in part, of all connections.
+  /// `most_held`: bytes of bodies that have come in part, of all connections.
   Lobby(LobbyTimes times, std::size_t most_held, Refusal refusal);
   ~Lobby();
 
@@ -51,7 +51,7 @@ class Lobby {
     std::unique_ptr<Connection> connection;
     Awaits awaits;
     Time since, deadline;
-    std::size_t held = 0;  ///< bytes, as they count
+    std::size_t held = 0;  ///< bytes of a body that has come in part
   };
   using Guests = std::map<int, Guest>;
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <tuple>
 
+#include "api/base/text.h"
 #include "server/base/turns.h"
 #include "server/http/answer_writer.h"
 #include "server/http/listener.h"
@@ -20,8 +21,6 @@ using api::ProblemCode;
 using std::chrono::steady_clock;
 
 constexpr std::size_t most_held = 64 << 20;
-// Of a body that is too large, what a client may send so that it gets to read the answer.
-constexpr std::uint64_t longest_drain = std::uint64_t(1) << 30;
 constexpr std::chrono::milliseconds longest_line(2000);
 
 /// RFC 9110, 9.1: another method is not implemented, one of these perhaps not allowed.
@@ -140,7 +139,8 @@ struct HttpServer::Impl {
       return problem(ProblemCode::not_implemented, "No path has this method.");
     if (head.framing.has_body() && !takes_body(method))
       return problem(ProblemCode::malformed_http, "This method takes no body.");
-    const std::uint64_t longest = head.expects_continue ? options.body_bytes : longest_drain;
+    const std::uint64_t longest =
+        head.expects_continue ? options.body_bytes : BodyReader::longest_drain;
     if (head.framing.length > longest) return too_large();
     if (head.expects_more)
       return problem(ProblemCode::expectation_failed, "Only 100-continue can be expected.");
@@ -170,7 +170,7 @@ struct HttpServer::Impl {
     if (!body.whole())
       return problem(ProblemCode::malformed_http, "The body did not arrive whole.");
     if (body.too_large()) return too_large();
-    const std::string_view coding = request.header("content-encoding");
+    const std::string coding = api::lower_case(request.header("content-encoding"));
     if (!coding.empty() && coding != "identity")
       return problem(ProblemCode::unsupported_media_type,
                      "A body in a content coding is not taken.");
@@ -180,6 +180,12 @@ struct HttpServer::Impl {
     if (!urgent && !turn)
       return problem(ProblemCode::overloaded, "More is asked at once than can be answered.");
     request.give_way = [&turn] { turn.reset(); };
+    HttpResponse answer = respond(request);
+    request.give_way = nullptr;
+    return answer;
+  }
+
+  HttpResponse respond(const HttpRequest& request) const {
     try {
       return handlers.respond(request);
     } catch (const std::exception& error) {

@@ -9,7 +9,7 @@ using std::chrono::steady_clock;
 
 constexpr std::chrono::seconds fresh(1);
 // What a probe may be kept waiting; and how long a disk may take before it counts as broken.
-constexpr std::chrono::milliseconds patience(25);
+constexpr std::chrono::milliseconds patience(40);
 constexpr std::chrono::seconds hanging(10);
 
 }  // namespace
