@@ -111,7 +111,7 @@ std::string chunk_of(std::string_view data) {
 }
 
 /// HTTP/1.0 knows no chunks: there the end of the connection ends the stream.
-bool write_stream(Connection& connection, const EventStream& stream, bool chunked,
+bool write_stream(Connection& connection, EventStream& stream, bool chunked,
                   const std::atomic<bool>& stopping) {
   if (!connection.flush()) return false;
   while (!stopping) {
@@ -128,6 +128,7 @@ bool write_stream(Connection& connection, const EventStream& stream, bool chunke
     if (!connection.write(chunked ? chunk_of(*events) : *events) || !connection.flush())
       return false;
   }
+  stream.next = nullptr;  // whoever sees the end finds its place free
   return !chunked || connection.write("0\r\n\r\n");
 }
 
@@ -137,7 +138,7 @@ Sent write_answer(Connection& connection, HttpResponse answer, bool close,
                   const std::atomic<bool>& stopping) {
   const Exchange& exchange = *connection.exchange();
   const bool http_1_0 = exchange.head.minor == 0;
-  const auto* stream = std::get_if<EventStream>(&answer.body);
+  auto* stream = std::get_if<EventStream>(&answer.body);
   const bool persists = exchange.head.keep_alive && !close && !stopping && !(stream && http_1_0);
 
   std::string head = head_of(answer);
