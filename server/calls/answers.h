@@ -78,7 +78,7 @@ HttpResponse awaited_status(CallContext& context, const HttpRequest& request, Ge
     return is_news(status);
   };
   if (!is_news(status) && !api::is_end((*status)->state))
-    answer_after(context, request, *seconds, waited, moment, ended_or_news);
+    static_cast<void>(answer_after(context, request, *seconds, waited, moment, ended_or_news));
   if (waited) status = get();
   if (!status) return problem_response(status.problem());
   const auto& [state, json, etag] = **status;

@@ -127,6 +127,7 @@ bool write_stream(Connection& connection, EventStream& stream, bool chunked,
     if (events->empty()) continue;
     if (!connection.write(chunked ? chunk_of(*events) : *events) || !connection.flush())
       return false;
+    connection.catch_up();
   }
   stream.next = nullptr;  // whoever sees the end finds its place free
   return !chunked || connection.write("0\r\n\r\n");

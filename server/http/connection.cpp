@@ -198,6 +198,11 @@ ssize_t Connection::send(std::string_view bytes) {
   }
 }
 
+void Connection::catch_up() {
+  transfer_.reset();
+  waited_ = {};
+}
+
 bool Connection::client_listens() const {
   pollfd poll{socket_.get(), POLLRDHUP, 0};
   return ::poll(&poll, 1, 0) == 0;

@@ -64,6 +64,9 @@ class Connection {
   /// or is gone.
   bool write(std::string_view bytes);
   bool flush();
+  /// All that there was is sent: a client that was slow gives back the thread's place, and its time
+  /// begins anew.
+  void catch_up();
   /// False once the client has closed its side or the connection is broken.
   bool client_listens() const;
   std::uint64_t sent() const { return sent_; }  ///< bytes in this exchange

@@ -5,11 +5,12 @@
 namespace translucube::server {
 namespace {
 
+using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr std::chrono::seconds fresh(1);
 // What a probe may be kept waiting; and how long a disk may take before it counts as broken.
-constexpr std::chrono::milliseconds patience(40);
+constexpr milliseconds patience(40);
 constexpr std::chrono::seconds hanging(10);
 
 }  // namespace
@@ -25,7 +26,8 @@ std::optional<std::string> DiskProbe::failure() {
   if (is_fresh()) return failure_;
   is_asked_ = true;
   asked_.notify_one();
-  if (told_.wait_for(lock, patience, is_fresh)) return failure_;
+  // As long as nothing was ever found out, nothing can be said.
+  if (told_.wait_for(lock, told_at_ ? patience : milliseconds(hanging), is_fresh)) return failure_;
   if (begun_ && steady_clock::now() - *begun_ > hanging)
     return "The disk of the service does not answer.";
   return failure_;
