@@ -142,11 +142,9 @@ std::unique_ptr<Connection> Lobby::look_after(Guest guest) {
       return nullptr;
     case Connection::Receipt::whole:
       return std::move(guest.connection);
-    case Connection::Receipt::faulty: {
-      const api::Problem fault = guest.connection->fault();
-      refuse(std::move(guest.connection), fault);
+    case Connection::Receipt::faulty:
+      refuse_fault(std::move(guest.connection));
       return nullptr;
-    }
     case Connection::Receipt::closed:
       break;
   }
@@ -171,6 +169,8 @@ void Lobby::close_overdue() {
       refuse(std::move(connection), not_served);
     else if (now == Connection::Receipt::begun)
       refuse(std::move(connection), too_slow);
+    else if (now == Connection::Receipt::faulty)
+      refuse_fault(std::move(connection));
     // One that never sent anything has not asked.
   }
 }
@@ -187,6 +187,11 @@ void Lobby::keep_within_memory() {
     }
   }
   for (Guest& guest : leaving) refuse(std::move(guest.connection), too_much);
+}
+
+void Lobby::refuse_fault(std::unique_ptr<Connection> connection) {
+  const api::Problem fault = connection->fault();
+  refuse(std::move(connection), fault);
 }
 
 void Lobby::refuse(std::unique_ptr<Connection> connection, const api::Problem& problem) {

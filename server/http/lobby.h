@@ -65,6 +65,7 @@ class Lobby {
   void keep_time(const std::stop_token& stop);
   void close_overdue();
   void refuse(std::unique_ptr<Connection> connection, const api::Problem& problem);
+  void refuse_fault(std::unique_ptr<Connection> connection);
 
   const LobbyTimes times_;
   const std::size_t most_held_;
