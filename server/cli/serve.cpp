@@ -124,6 +124,8 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   Metrics metrics;
   metrics.set_store_gauges([&] { return gauges_of(store->gauges()); });
   JobService service(catalog, config, colors, *store, artifacts, metrics);
+  // The first look at the disk takes what it takes; from here on nobody waits for one.
+  static_cast<void>(service.unready_reason());
   CallContext context(service, catalog, colors, config);
   Front front(std::move(policy), metrics,
               [&](const HttpRequest& request) { return respond(context, request); });

@@ -20,6 +20,7 @@ using std::chrono::steady_clock;
 
 constexpr milliseconds deadline_check(100);  // how late a deadline may be seen
 constexpr milliseconds longest_farewell(2000);
+constexpr milliseconds rest_time(200);
 
 const api::Problem too_slow{
     api::ProblemCode::request_timeout, "The request did not come whole in time.", {}};
@@ -61,6 +62,10 @@ void Lobby::wait(std::unique_ptr<Connection> connection) {
   add(std::move(connection), Awaits::request, times_.idle);
 }
 
+void Lobby::rest(std::unique_ptr<Connection> connection) {
+  add(std::move(connection), Awaits::time, rest_time);
+}
+
 void Lobby::linger(std::unique_ptr<Connection> connection) {
   connection->end_sending();
   add(std::move(connection), Awaits::close, longest_farewell);
@@ -86,7 +91,8 @@ void Lobby::add(Guest guest) {
   guest.held = guest.awaits == Awaits::body ? guest.connection->held() : 0;
   const std::lock_guard lock(mutex_);
   if (closed_) return;
-  if (::epoll_ctl(epoll_.get(), EPOLL_CTL_MOD, socket, &event) != 0 &&
+  if (guest.awaits != Awaits::time &&
+      ::epoll_ctl(epoll_.get(), EPOLL_CTL_MOD, socket, &event) != 0 &&
       ::epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, socket, &event) != 0)
     return;
   held_ += guest.held;
@@ -164,6 +170,10 @@ void Lobby::close_overdue() {
   }
   for (auto& [connection, awaits, since, deadline, held] : late) {
     if (awaits == Awaits::close) continue;
+    if (awaits == Awaits::time) {
+      wait(std::move(connection));
+      continue;
+    }
     const Connection::Receipt now = connection->receive();
     if (now == Connection::Receipt::whole)
       refuse(std::move(connection), not_served);

@@ -37,7 +37,10 @@ class Lobby {
   void enter(std::unique_ptr<Connection> connection);       ///< a new one
   void await_body(std::unique_ptr<Connection> connection);  ///< its exchange has begun
   void wait(std::unique_ptr<Connection> connection);        ///< answered, kept alive
-  void linger(std::unique_ptr<Connection> connection);      ///< answered, to be closed
+  /// Answered that it should come later: not looked at for a moment, so that clients that ask again
+  /// at once do not keep the others from being answered.
+  void rest(std::unique_ptr<Connection> connection);
+  void linger(std::unique_ptr<Connection> connection);  ///< answered, to be closed
   /// Closes the connection that has been here longest, of those that send a body only if there is
   /// no other; false where there is none at all.
   bool evict();
@@ -46,7 +49,7 @@ class Lobby {
 
  private:
   using Time = std::chrono::steady_clock::time_point;
-  enum class Awaits { head, body, request, close };
+  enum class Awaits { head, body, request, time, close };
   struct Guest {
     std::unique_ptr<Connection> connection;
     Awaits awaits;

@@ -112,9 +112,12 @@ struct HttpServer::Impl {
     const bool urgent = handlers.urgent(exchange.request);
     if (!answer) answer = answer_to(exchange, urgent, last);
     if (urgent || last) connection->hurry();
+    const bool later = answer->status == 503 && !urgent;
     const Sent sent = send(*connection, *std::move(answer));
     connection->end_exchange();
-    if (sent == Sent::persists)
+    if (sent == Sent::persists && later)
+      lobby.rest(std::move(connection));
+    else if (sent == Sent::persists)
       lobby.wait(std::move(connection));
     else
       lobby.linger(std::move(connection));

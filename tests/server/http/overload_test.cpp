@@ -60,6 +60,26 @@ TEST(OverloadTest, SoManyAreAnsweredSoManyStandInLineAndTheOthersComeLater) {
   EXPECT_EQ(answered, 8);
 }
 
+TEST(OverloadTest, WhoAsksAgainAtOnceIsHeardALittleLater) {
+  HttpOptions options;
+  options.answering = 1;
+  options.in_line = 0;
+  Sockets sockets(options);
+  auto busy = all_ask_for(sockets, "/slow", 1);
+  ASSERT_TRUE(eventually([&] { return sockets.gate.waiting == 1; }));
+  Wire wire(sockets.server.port());
+  const auto start = steady_clock::now();
+  for (int i = 0; i < 4; ++i) {
+    wire.send(asking_for("/small"));
+    EXPECT_THAT(wire.receive(), StartsWith("HTTP/1.1 503"));
+  }
+  EXPECT_GE(steady_clock::now() - start, milliseconds(600));
+  sockets.gate.open();
+  EXPECT_THAT(busy[0]->receive(), StartsWith("HTTP/1.1 200"));
+  wire.send(get);
+  EXPECT_THAT(wire.receive(), StartsWith("HTTP/1.1 200"));
+}
+
 TEST(OverloadTest, NobodyStandsInLineForLong) {
   HttpOptions options;
   options.answering = 1;
