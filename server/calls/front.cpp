@@ -35,7 +35,10 @@ Front::Front(AccessPolicy policy, Metrics& metrics, Respond respond)
 HttpHandlers Front::handlers() {
   return {[this](HttpRequest& request) { return admit(request); },
           [this](const HttpRequest& request) { return respond(request); },
-          [](const HttpRequest& request) { return is_probe(request.path); },
+          // Metrics too: they are looked at when there is too much to do.
+          [](const HttpRequest& request) {
+            return is_probe(request.path) || request.path == metrics_path;
+          },
           [this](const RequestRecord& record) { done(record); }};
 }
 
@@ -65,6 +68,9 @@ HttpResponse Front::metrics_response(const HttpRequest& request) const {
     response.headers.emplace_back("Allow", "GET, HEAD");
     return response;
   }
+  const Places::Place scrape = scrapes_.take();
+  if (!scrape)
+    return problem_response({ProblemCode::overloaded, "Too many ask for the metrics.", {}});
   return {200, {{"Cache-Control", "no-store"}}, Metrics::content_type, metrics_.text()};
 }
 

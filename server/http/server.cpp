@@ -111,7 +111,7 @@ struct HttpServer::Impl {
     Exchange& exchange = *connection->exchange();
     const bool urgent = handlers.urgent(exchange.request);
     if (!answer) answer = answer_to(exchange, urgent, last);
-    if (urgent || last) connection->hurry();
+    if (last) connection->hurry();
     const bool later = answer->status == 503 && !urgent;
     const Sent sent = send(*connection, *std::move(answer));
     connection->end_exchange();

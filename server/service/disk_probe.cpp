@@ -10,7 +10,7 @@ using std::chrono::steady_clock;
 
 constexpr std::chrono::seconds fresh(1);
 // What a probe may be kept waiting; and how long a disk may take before it counts as broken.
-constexpr milliseconds patience(40);
+constexpr milliseconds patience(20);
 constexpr std::chrono::seconds hanging(10);
 
 }  // namespace

@@ -96,10 +96,11 @@ TEST(SweepServiceTest, EachStepOfASweepIsANewVersion) {
   std::map<std::string, std::string> told;  // by version
   service.changes().watch(std::chrono::seconds(120), [&] {
     const Moment moment = *service.moment_of_sweep(id);
-    const std::string json = to_json(tested.get(id));
+    const std::string now = to_json(tested.get(id));
     // Where nothing came in between, a version is one text.
-    if (service.moment_of_sweep(id)->version == moment.version)
-      EXPECT_EQ(told.try_emplace(moment.version, json).first->second, json);
+    if (service.moment_of_sweep(id)->version == moment.version) {
+      EXPECT_EQ(told.try_emplace(moment.version, now).first->second, now);
+    }
     return is_end(moment.state);
   });
   EXPECT_EQ((*service.tell_sweep(id))->json, to_json(tested.get(id)));
