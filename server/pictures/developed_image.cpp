@@ -42,7 +42,7 @@ ImageFile redeveloped_image(Darkroom& darkroom, const StoredResult& result,
   const std::string name = explorable_name(result.image);
   const auto film = darkroom.explorables.get(name, [&] {
     // One at a time: each takes much memory.
-    const std::lock_guard lock(darkroom.busy);
+    const std::lock_guard lock(darkroom.reading);
     return read_explorable(darkroom.artifacts.path(result.content, name)).film;
   });
   Image image = develop_explorable(*film, redeveloped.absorption.absorber,
@@ -58,6 +58,8 @@ std::optional<Result<ImageFile>> partial_image(Darkroom& darkroom, LiveFilm& liv
   if (!checked) return checked.problem();
   const auto redeveloped = redevelopment_of(request, query, darkroom.catalog);
   if (!redeveloped) return redeveloped.problem();
+  const Places::Place turn = darkroom.developing.take();
+  if (!turn) return Result<ImageFile>(busy_darkroom());
   Image image;
   std::uint32_t samples = 0;
   {

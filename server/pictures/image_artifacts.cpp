@@ -109,6 +109,10 @@ void remove_files(ArtifactStore& artifacts, const StoredResult& result) {
   artifacts.remove_if_empty(result.content);
 }
 
+Problem busy_darkroom() {
+  return {ProblemCode::overloaded, "Too many pictures are being made.", {}};
+}
+
 std::string explorable_name(const std::string& image) { return "explorable-" + image; }
 
 namespace {
@@ -133,11 +137,12 @@ std::optional<StoredResult> whole_result(Darkroom& darkroom, const std::string& 
 
 Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
                                  const std::string& request, const ImageQuery& query) {
-  auto& [catalog, colors, store, artifacts, metrics, explorables, busy] = darkroom;
-  const auto checked = image_form(query, colors.displays());
+  JobStore& store = darkroom.store;
+  ArtifactStore& artifacts = darkroom.artifacts;
+  const auto checked = image_form(query, darkroom.colors.displays());
   if (!checked) return checked.problem();
   const auto& form = *checked;
-  const auto redeveloped = redevelopment_of(request, query, catalog);
+  const auto redeveloped = redevelopment_of(request, query, darkroom.catalog);
   if (!redeveloped) return redeveloped.problem();
   const Problem gone{ProblemCode::gone,
                      "The picture was removed to make room; the same request makes it again.",
@@ -147,6 +152,8 @@ Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
   store.touch_result(content);
   const std::string& original = result->image;
   if (*redeveloped) try {
+      const Places::Place turn = darkroom.developing.take();
+      if (!turn) return busy_darkroom();
       return redeveloped_image(darkroom, *result, **redeveloped, form);
     } catch (const ImageError& error) {
       spdlog::error("result {}: {}", content, error.what());
@@ -157,12 +164,13 @@ Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
   const std::string artifact = as_stored ? original : "derived-" + form_name(form);
   auto file = artifacts.open(content, artifact);
   if (!file && !as_stored) {
-    const std::lock_guard lock(busy);
+    const Places::Place turn = darkroom.making.take();
+    if (!turn) return busy_darkroom();
     file = artifacts.open(content, artifact);  // another request may have made it meanwhile
     if (!file) try {
         Image image = read_image(artifacts.path(content, original));
         write_picture(artifacts, content, artifact, [&](const std::filesystem::path& temporary) {
-          write_form(temporary, std::move(image), form, colors, request);
+          write_form(temporary, std::move(image), form, darkroom.colors, request);
         });
         store.resize_result(content, artifacts.bytes(content));
         file = artifacts.open(content, artifact);

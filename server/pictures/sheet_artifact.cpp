@@ -63,7 +63,8 @@ Result<ImageFile> sheet_artifact(Darkroom& darkroom, const api::SweepStatus& swe
       "sheet-" + content_hash(states_of(darkroom, sweep)) + '-' + form_name(form);
   ArtifactStore& artifacts = darkroom.artifacts;
 
-  const std::lock_guard lock(darkroom.busy);
+  const Places::Place turn = darkroom.making.take();
+  if (!turn) return busy_darkroom();
   auto file = artifacts.open(sweep.id, artifact);
   if (!file) try {
       SweepSheet sheet(sweep.sweep, form, darkroom.colors);

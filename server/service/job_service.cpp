@@ -15,7 +15,8 @@ JobService::JobService(const api::Catalog& catalog, const ServerConfig& config,
       probe_(store, artifacts),
       live_films_([this] { changes_.tell(); }),
       explorables_(config.explorable_memory_bytes),
-      darkroom_{catalog, colors, store, artifacts, metrics, explorables_} {
+      darkroom_{catalog, colors, store, artifacts, metrics, explorables_},
+      pictures_(static_cast<std::size_t>(config.open_pictures), std::chrono::seconds(1)) {
   janitor_.clean_up();
   workers_ = std::make_unique<WorkerPool>(
       Workshop{catalog, store, artifacts, metrics, live_films_, explorables_, std::move(engine),

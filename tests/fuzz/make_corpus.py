@@ -58,6 +58,25 @@ header_lines = [
 ]
 
 
+# Of a connection: a byte that says how it is cut, then what comes.
+host = b"Host: localhost\r\n"
+chunked = b"POST /a HTTP/1.1\r\n" + host + b"Transfer-Encoding: chunked\r\n\r\n"
+messages = [
+    b"GET /a?b=c%20d HTTP/1.1\r\n" + host + b"\r\n",
+    b"GET http://localhost:80/a HTTP/1.1\r\n" + host + b"Connection: close\r\n\r\n",
+    b"OPTIONS * HTTP/1.1\r\n" + host + b"\r\n",
+    b"CONNECT a.example:443 HTTP/1.1\r\n" + host + b"\r\n",
+    b"POST /a HTTP/1.0\r\nContent-Length: 2\r\n\r\n{}\r\nGET /b HTTP/1.0\r\n\r\n",
+    b"POST /a HTTP/1.1\r\n" + host + b"Content-Length: 6\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\nX",
+    chunked + b"2\r\n{}\r\n0\r\n\r\nGET /b HTTP/1.1\r\n" + host + b"\r\n",
+    chunked + b"2;a=b;c=\"d;e\"\r\n{}\r\n0\r\nT: x\r\n\r\n",
+    chunked + b"02 ; a\r\n{}\r\n00\r\n\r\n",
+    chunked + b"0x2\r\n{}\r\n0\r\n\r\n",
+    b"GET /a HTTP/1.1\r\n" + host + b"X-A : b\r\nX-B: c\r\n d\r\n\r\n",
+    b"GET /a HTTP/1.1\r\n" + host + b"X-A: \xc3\xa4\t\"b\"\r\nX-A:\r\n\r\n",
+]
+
+
 def write(name, seeds):
     folder = out / name
     folder.mkdir(parents=True, exist_ok=True)
@@ -122,3 +141,4 @@ write("headers", [line.encode() for line in header_lines])
 write("mesh", meshes)
 write("light", pictures)
 write("answer", answers)
+write("messages", [bytes([step]) + m + n for step in (0, 4) for m in messages for n in (b"", messages[0])])

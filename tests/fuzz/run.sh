@@ -12,7 +12,7 @@ corpus=build/fuzz/corpus findings=build/fuzz/findings
 mkdir -p "$findings"
 python3 tests/fuzz/make_corpus.py build/fuzz/seeds
 failed=0
-for name in render_request sweep_request headers mesh light answer; do
+for name in render_request sweep_request headers messages mesh light answer; do
   mkdir -p "$corpus/$name"
   echo "== fuzz: $name, $seconds s"
   options=
