@@ -5,8 +5,8 @@
 set(rooms
   "picture/sandbox:"
   "picture: picture/exr picture/oiio picture/sandbox"
-  "picture/exr: picture picture/light"
-  "picture/oiio: picture picture/light"
+  "picture/exr: picture"
+  "picture/oiio: picture"
   "picture/light: picture picture/exr picture/oiio"
   "picture/sheet: picture"
 

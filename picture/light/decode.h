@@ -1,14 +1,16 @@
 #pragma once
 
+// Pictures of strangers as light: one place decides for every format what each attribute means, and
+// refuses by name what it does not honour.
+
 #include <span>
 
 #include "picture/image.h"
-#include "picture/light/stored_picture.h"
+#include "picture/stored_picture.h"
 
 namespace translucube {
 
-/// The formats that environments come in, by their first bytes.
-enum class LightFormat { exr, radiance, png, jpeg, tiff, unknown };
+/// By the first bytes.
 LightFormat light_format(std::span<const char> bytes);
 
 /// What a picture means as light: linear R, G, B with the primaries and white of Rec.709 (Bradford

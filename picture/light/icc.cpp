@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "picture/image_io.h"
-#include "picture/light/stored_picture.h"
+#include "picture/stored_picture.h"
 
 namespace translucube {
 namespace {

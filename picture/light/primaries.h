@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "picture/image.h"
-#include "picture/light/stored_picture.h"
+#include "picture/stored_picture.h"
 
 namespace translucube {
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "picture/light/stored_picture.h"
+#include "picture/stored_picture.h"
 
 namespace translucube {
 

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "picture/image_io.h"
-#include "picture/light/decode.h"
+#include "picture/stored_picture.h"
 
 namespace translucube {
 

@@ -8,7 +8,7 @@
 
 #include <mutex>
 
-#include "picture/light/tags.h"
+#include "picture/oiio/tags.h"
 #include "picture/oiio/file.h"
 #include "picture/oiio/metadata.h"
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "picture/light/decode.h"
+#include "picture/stored_picture.h"
 
 namespace translucube {
 

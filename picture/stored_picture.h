@@ -1,8 +1,8 @@
 #pragma once
 
-// Pictures of strangers as light. Each format's reader tells what a file holds, as a StoredPicture,
-// and decides nothing; decode.h decides for all of them, and refuses what it does not honour. None
-// of it opens a file: it runs in a process without rights (picture/sandbox).
+// What picture files of strangers hold. Each format's reader (exr/, oiio/, light/) tells it and
+// decides nothing; light/decode.h decides for all of them. None of it opens a file: it runs in a
+// process without rights (sandbox/).
 
 #include <array>
 #include <cstdint>
@@ -11,6 +11,9 @@
 #include <vector>
 
 namespace translucube {
+
+/// The formats that environments come in.
+enum class LightFormat { exr, radiance, png, jpeg, tiff, unknown };
 
 /// CIE 1931 x, y of red, green, blue and white.
 struct Chromaticities {

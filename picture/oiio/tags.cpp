@@ -1,4 +1,4 @@
-#include "picture/light/tags.h"
+#include "picture/oiio/tags.h"
 
 #include <algorithm>
 #include <array>
