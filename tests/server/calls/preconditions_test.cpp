@@ -25,7 +25,7 @@ TEST(PreconditionsTest, GetIsAnsweredWhereTheTagIsTheRightOne) {
   const std::string path = "/v1/renders/" + tested.service.submit(small_request(4)).id;
   const std::string tag = tested.etag(path);
   ASSERT_FALSE(tag.empty());
-  for (const std::string& method : {"GET", "HEAD"}) {
+  for (const std::string method : {"GET", "HEAD"}) {
     const auto status = [&](Headers headers) {
       return tested.ask(method, path, std::move(headers)).status;
     };
