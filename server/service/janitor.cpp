@@ -11,23 +11,37 @@
 namespace translucube::server {
 
 void Janitor::clean_up() {
+  for (const Leftover& removed : store_.leftovers()) discard(removed);
+  std::size_t unknown = 0;
   for (const std::string& folder : artifacts_.ids()) {
-    if (!is_id(folder) && !is_content_key(folder)) continue;
-    const std::optional<StoredResult> result = store_.find_result(folder);
-    const std::optional<Job> job = is_id(folder) ? store_.find(folder) : std::nullopt;
-    const bool open = job && !api::is_end(job->state);
-    if (result)
-      remove_derived(*result);
-    else if (!open)
-      artifacts_.remove_all(folder);
+    if (clean_up(folder)) continue;
+    artifacts_.leave_alone(folder);
+    ++unknown;
   }
+  if (unknown > 0)
+    spdlog::warn(
+        "{} folders of pictures are unknown to the job store, which may be older than they are: "
+        "they stay as they are",
+        unknown);
 }
 
-/// All but the picture, and the path lengths beside it; the bytes that are left.
+/// False where the store knows nothing of the folder.
+bool Janitor::clean_up(const std::string& folder) {
+  if (const auto result = store_.find_result(folder)) {
+    remove_derived(*result);
+    return true;
+  }
+  if (!is_id(folder)) return false;
+  const std::optional<Job> job = store_.find(folder);
+  if (!job && !store_.find_sweep(folder)) return false;
+  if (!job || api::is_end(job->state)) artifacts_.remove_all(folder);  // films, or sheets
+  return true;
+}
+
+/// The bytes that are left.
 std::uint64_t Janitor::remove_derived(const StoredResult& result) {
   for (const std::string& name : artifacts_.names(result.content))
-    if (name != result.image && name != explorable_name(result.image))
-      artifacts_.remove(result.content, name);
+    if (is_derived(name)) artifacts_.remove(result.content, name);
   const std::uint64_t left = artifacts_.bytes(result.content);
   store_.resize_result(result.content, left);
   return left;
@@ -61,20 +75,22 @@ bool Janitor::remove_results(std::uint64_t bytes, std::uint64_t goal) {
   return removed;
 }
 
-void Janitor::discard(const std::string& folder) {
+void Janitor::discard(const Leftover& removed) {
   try {
-    artifacts_.remove_all(folder);
-  } catch (const FileError& error) {
-    spdlog::warn("{}: {}", folder, error.what());
+    if (removed.image.empty())
+      artifacts_.remove_all(removed.folder);
+    else if (const auto now = store_.find_result(removed.folder);
+             !now || now->image != removed.image)
+      remove_files(artifacts_, {removed.folder, removed.image, {}, 0, {}});
+    store_.forget(removed);
+  } catch (const std::runtime_error& error) {  // StoreError, FileError
+    spdlog::warn("{}: {}", removed.folder, error.what());
   }
 }
 
+void Janitor::discard(const std::string& folder) { discard(Leftover{folder, {}}); }
 void Janitor::discard(const StoredResult& result) {
-  try {
-    remove_files(artifacts_, result);
-  } catch (const FileError& error) {
-    spdlog::warn("result {}: {}", result.content, error.what());
-  }
+  discard(Leftover{result.content, result.image});
 }
 
 }  // namespace translucube::server

@@ -15,8 +15,9 @@ class Janitor {
  public:
   Janitor(JobStore& store, ArtifactStore& artifacts) : store_(store), artifacts_(artifacts) {}
 
-  /// What a crash left: films of jobs that have ended, pictures that no result names. Derived
-  /// pictures go too: the colour config may be another one since they were made. For the start,
+  /// What a crash left: films of jobs that have ended, files of what the store knows to be removed.
+  /// Derived pictures go too: the colour config may be another one since they were made. A folder
+  /// that the store does not know stays, and is told: nothing says that it may go. For the start,
   /// while nobody works. Throws StoreError, FileError.
   void clean_up();
 
@@ -31,6 +32,8 @@ class Janitor {
   void discard(const StoredResult& result);
 
  private:
+  bool clean_up(const std::string& folder);
+  void discard(const Leftover& removed);
   std::uint64_t remove_derived(const StoredResult& result);
   bool remove_results(std::uint64_t bytes, std::uint64_t goal);
 

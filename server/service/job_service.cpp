@@ -2,6 +2,8 @@
 
 #include "server/service/job_service.h"
 
+#include <spdlog/spdlog.h>
+
 namespace translucube::server {
 
 JobService::JobService(const api::Catalog& catalog, const ServerConfig& config,
@@ -50,6 +52,11 @@ void JobService::discard(const std::vector<StoredResult>& unused) {
 
 void JobService::shut_down(std::chrono::milliseconds drain) {
   changes_.end();
+  try {
+    store_.announce_end();
+  } catch (const StoreError& error) {
+    spdlog::warn("the end is not announced: {}", error.what());
+  }
   workers_->drain(drain);
   workers_->stop();
 }

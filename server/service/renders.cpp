@@ -42,6 +42,7 @@ Result<Submission> JobService::submit(std::string_view document,
   if (!request) return request.problem();
   const NewJob job = new_job(*request, catalog_, idempotency_key);
   return guarded([&]() -> Result<Submission> {
+    whole_result(store_, darkroom_.artifacts, job.content, Look::quick);
     const auto outcome = store_.submit(job);
     if (!outcome) return outcome.problem();
     const auto& submitted = *outcome;

@@ -42,6 +42,9 @@ Result<SweepSubmission> JobService::submit_sweep(
   if (!request) return request.problem();
   const NewSweep sweep = new_sweep(*request, catalog_, idempotency_key);
   return guarded([&]() -> Result<SweepSubmission> {
+    for (const std::vector<Picture>& lanes : sweep.images)
+      for (const Picture& lane : lanes)
+        whole_result(store_, darkroom_.artifacts, lane.content, Look::quick);
     const auto outcome = store_.submit(sweep);
     if (!outcome) return outcome.problem();
     const auto& submitted = *outcome;

@@ -59,6 +59,13 @@ struct StoredResult {
   std::string stats;                           ///< of the render that made it, JSON text
 };
 
+/// Files of what the store has no longer.
+struct Leftover {
+  std::string folder;  ///< of a job, of a sweep, or of a result
+  std::string image;   ///< of a result; "": all that is in the folder
+  friend bool operator==(const Leftover&, const Leftover&) = default;
+};
+
 struct StoredSweep {
   std::string id;
   api::JobState state = api::JobState::queued;

@@ -67,15 +67,29 @@ class JobStore {
   virtual bool fail(const Task& task, const std::string& error) = 0;
   virtual std::int64_t lease_ms() const = 0;
 
+  // The end of the process. A store that is opened again frees the tasks that were held when its
+  // last process died. Their jobs are suspects: each is worked on alone, before all others, until a
+  // pass of it is complete. One that was alone at a death, and there at one before since its last
+  // complete pass, has failed.
+  /// This process ends as it was told to: what it holds when it does is not suspect.
+  virtual void announce_end() = 0;
+
   // Results.
   virtual std::optional<StoredResult> find_result(const std::string& content) const = 0;
   virtual void touch_result(const std::string& content) = 0;  ///< it was used now
   virtual void resize_result(const std::string& content, std::uint64_t bytes) = 0;
-  /// False if it is not there, or another one of this content is.
+  /// Its files are to be removed. False if it is not there, or another one of this content is.
   virtual bool remove_result(const StoredResult& result) = 0;
+  /// Forgets it: its picture is not there, or not whole. What there is stays.
+  virtual void lose_result(const StoredResult& result) = 0;
   /// The results that were not used for longest and make up `bytes` or more, by their last use.
   virtual std::vector<StoredResult> least_recently_used(std::uint64_t bytes) const = 0;
   virtual std::uint64_t result_bytes() const = 0;
+
+  // Files. What was removed above is left over until its files are gone. Only what stands here may
+  // be removed: a store that was lost in part, or put back from a copy, knows less than the disk.
+  virtual std::vector<Leftover> leftovers() const = 0;
+  virtual void forget(const Leftover& removed) = 0;
 
   // Watching.
   /// Those of a render or a sweep after `number`, in their order; nothing for what is not there.
@@ -83,6 +97,9 @@ class JobStore {
                                           std::uint64_t number) const = 0;
   virtual QueueGauges gauges() const = 0;
   virtual void check_writable() = 0;
+  /// Brings what was written since the last time to where the loss of a journal does not touch it.
+  /// Others go on reading and writing meanwhile.
+  virtual void checkpoint() = 0;
 };
 
 struct StoreOptions {

@@ -16,8 +16,6 @@ namespace {
 
 using api::ProblemCode;
 
-// A render that ends the process this often (crash, out of memory) is given up.
-constexpr int max_attempts = 20;
 // A disk that refuses is tried again for about two minutes.
 constexpr int max_storage_attempts = 8;
 
@@ -60,9 +58,6 @@ void TaskRunner::run(const Task& task, std::stop_source work) {
 }
 
 void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
-  if (task.attempts > max_attempts)
-    throw RenderFailure(
-        {ProblemCode::internal, "The service ended too often while it worked on this render.", {}});
   const std::optional<Job> job = workshop_.store.find(task.job_id);
   if (!job || job->state != api::JobState::running) {
     give_back(task);  // canceled or removed between the claim and here
@@ -118,7 +113,8 @@ std::variant<TracedPass, OutOfTime, Stopped> TaskRunner::trace_or_read(const Tas
     const TraceCounters& counters = pass->film.counters;
     workshop_.metrics.count_pass(
         {pass->seconds, counters.camera_samples,
-         counters.flights + counters.boundary_events + counters.light_samples, counters.nan_samples});
+         counters.flights + counters.boundary_events + counters.light_samples,
+         counters.nan_samples});
   }
   return outcome;
 }

@@ -24,7 +24,8 @@ bool SqliteJobStore::move(const std::string& id, JobState to) {
         .bind(now, id)
         .run();
   if (api::is_end(to))
-    Statement(writer_, "UPDATE jobs SET finished_ms = ?, eta_seconds = NULL WHERE id = ?")
+    Statement(writer_,
+              "UPDATE jobs SET finished_ms = ?, eta_seconds = NULL, suspect = 0 WHERE id = ?")
         .bind(now, id)
         .run();
   Statement(writer_, "UPDATE jobs SET state = ? WHERE id = ?").bind(rows::text(to), id).run();
@@ -63,7 +64,7 @@ void SqliteJobStore::cancel_sweep(const std::string& id) {
   const std::int64_t now = options_.clock();
   const std::string canceled = rows::text(JobState::canceled);
   Statement(writer_,
-            "UPDATE jobs SET state = ?, finished_ms = ?, eta_seconds = NULL "
+            "UPDATE jobs SET state = ?, finished_ms = ?, eta_seconds = NULL, suspect = 0 "
             "WHERE sweep_id = ? AND state IN (?, ?)")
       .bind(canceled, now, id, rows::text(JobState::queued), rows::text(JobState::running))
       .run();
