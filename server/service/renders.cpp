@@ -40,6 +40,7 @@ Result<Submission> JobService::submit(std::string_view document,
   if (const auto problem = refusal()) return *problem;
   const auto request = api::parse_render_request(document, catalog_);
   if (!request) return request.problem();
+  if (const auto problem = too_large(*request, 1, "/image")) return *problem;
   const NewJob job = new_job(*request, catalog_, idempotency_key);
   return guarded([&]() -> Result<Submission> {
     whole_result(store_, darkroom_.artifacts, job.content, Look::quick);

@@ -2,9 +2,11 @@
 
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 
 #include "server/base/ids.h"
 
@@ -187,6 +189,13 @@ void ArtifactStore::leave_alone(const std::string& id) {
 ArtifactStore::Figures ArtifactStore::figures() const {
   const std::lock_guard lock(counting_);
   return {bytes_, unknown_, unknown_bytes_, damaged_};
+}
+
+std::uint64_t ArtifactStore::free_bytes() const {
+  struct statvfs system {};
+  if (::statvfs(root_.c_str(), &system) != 0)
+    throw FileError("cannot look at " + root_.string() + ": " + std::strerror(errno));
+  return std::uint64_t{system.f_bavail} * system.f_frsize;
 }
 
 void ArtifactStore::check_writable() {

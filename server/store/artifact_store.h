@@ -56,6 +56,7 @@ class ArtifactStore {
   std::vector<std::string> ids() const;
   std::uint64_t bytes(const std::string& id) const;  ///< of all files in the folder
   void check_writable();
+  std::uint64_t free_bytes() const;  ///< of its file system, for who is not root
 
   /// Nobody knows whose this folder is: it stays as it is, and is not among `bytes`.
   void leave_alone(const std::string& id);

@@ -49,10 +49,14 @@ class JobStore {
   /// which are told for their files. Empty if there is none of this id.
   virtual std::optional<std::vector<StoredResult>> remove(const std::string& id) = 0;
 
+  /// Some of the renders and sweeps that ended before this time, the oldest first.
+  virtual std::vector<std::string> ended_before(std::int64_t time_ms, int most) const = 0;
+
   // Tasks.
   /// The oldest task of this priority that nobody holds, of the job `preferred` if that has one.
   /// Its job is running then.
-  virtual std::optional<Task> claim(Priority priority, const std::string& preferred = {}) = 0;
+  virtual std::optional<Task> claim(Priority priority, const std::string& preferred = {},
+                                    Intake intake = Intake::all) = 0;
   // The functions below do nothing and return false if the claim is no longer the task's last one.
   virtual bool renew(const Task& task) = 0;
   virtual bool release(const Task& task, std::int64_t delay_ms = 0,
@@ -96,6 +100,7 @@ class JobStore {
   virtual std::vector<Event> events_after(const std::string& subject,
                                           std::uint64_t number) const = 0;
   virtual QueueGauges gauges() const = 0;
+  virtual OpenNeeds open_needs() const = 0;
   virtual void check_writable() = 0;
   /// Brings what was written since the last time to where the loss of a journal does not touch it.
   /// Others go on reading and writing meanwhile.

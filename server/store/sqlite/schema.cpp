@@ -112,6 +112,11 @@ CREATE TABLE process(
   id INTEGER PRIMARY KEY CHECK (id = 1),
   ends_as_told INTEGER NOT NULL);
 INSERT INTO process VALUES (1, 0);
+ALTER TABLE jobs ADD COLUMN picture_bytes INTEGER NOT NULL DEFAULT 0;
+CREATE INDEX jobs_by_need ON jobs(picture_bytes) WHERE state IN ('queued', 'running');
+CREATE INDEX renders_by_end ON jobs(finished_ms)
+  WHERE sweep_id IS NULL AND finished_ms IS NOT NULL;
+CREATE INDEX sweeps_by_end ON sweeps(finished_ms) WHERE finished_ms IS NOT NULL;
 CREATE TABLE leftovers(
   folder TEXT NOT NULL,
   image TEXT NOT NULL,

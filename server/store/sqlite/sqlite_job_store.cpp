@@ -119,6 +119,19 @@ std::optional<std::vector<StoredResult>> SqliteJobStore::remove(const std::strin
   return unused;
 }
 
+std::vector<std::string> SqliteJobStore::ended_before(std::int64_t time_ms, int most) const {
+  const Lock lock(reader_.mutex);
+  Statement statement(reader_,
+                      "SELECT id, finished_ms FROM jobs WHERE sweep_id IS NULL AND "
+                      "finished_ms IS NOT NULL AND finished_ms < ?1 UNION ALL "
+                      "SELECT id, finished_ms FROM sweeps WHERE finished_ms IS NOT NULL AND "
+                      "finished_ms < ?1 ORDER BY finished_ms LIMIT ?2");
+  statement.bind(time_ms, most);
+  std::vector<std::string> ids;
+  while (statement.step()) ids.push_back(statement.text(0));
+  return ids;
+}
+
 void SqliteJobStore::checkpoint() {
   if (!checkpointer_) return;
   const Lock lock(checkpointer_->mutex);

@@ -35,11 +35,13 @@ class SqliteJobStore final : public JobStore {
   std::optional<PointPicture> picture_of_point(const std::string& sweep_id,
                                                std::uint32_t point) const override;
   std::optional<std::vector<StoredResult>> remove(const std::string& id) override;
+  std::vector<std::string> ended_before(std::int64_t time_ms, int most) const override;
   void check_writable() override;
   void checkpoint() override;
 
   // tasks.cpp
-  std::optional<Task> claim(Priority priority, const std::string& preferred) override;
+  std::optional<Task> claim(Priority priority, const std::string& preferred,
+                            Intake intake) override;
   bool renew(const Task& task) override;
   bool release(const Task& task, std::int64_t delay_ms, bool counts_as_attempt) override;
   bool complete(const Task& task, const Completion& completion, const Pass& next) override;
@@ -67,6 +69,7 @@ class SqliteJobStore final : public JobStore {
   void cancel(const std::string& id) override;
   std::vector<Event> events_after(const std::string& subject, std::uint64_t number) const override;
   QueueGauges gauges() const override;
+  OpenNeeds open_needs() const override;
 
  private:
   struct NewRow;

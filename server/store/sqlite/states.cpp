@@ -112,6 +112,15 @@ std::vector<Event> SqliteJobStore::events_after(const std::string& subject,
   return events;
 }
 
+OpenNeeds SqliteJobStore::open_needs() const {
+  const Lock lock(reader_.mutex);
+  Statement sum(reader_,
+                "SELECT COALESCE(SUM(picture_bytes), 0), COALESCE(MAX(picture_bytes), 0) FROM jobs "
+                "WHERE state IN ('queued', 'running')");
+  if (!sum.step()) return {};
+  return {static_cast<std::uint64_t>(sum.integer(0)), static_cast<std::uint64_t>(sum.integer(1))};
+}
+
 QueueGauges SqliteJobStore::gauges() const {
   const Lock lock(reader_.mutex);
   QueueGauges gauges;

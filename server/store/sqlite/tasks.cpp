@@ -57,10 +57,13 @@ RETURNING job_id, pass_index, first_sample, sample_count, fencing_token, attempt
   return task;
 }
 
-std::optional<Task> SqliteJobStore::claim(Priority priority, const std::string& preferred) {
+std::optional<Task> SqliteJobStore::claim(Priority priority, const std::string& preferred,
+                                          Intake intake) {
+  if (intake == Intake::none) return std::nullopt;
   // A claim that is lost to a power cut is made again: nobody was promised anything.
   Transaction transaction(writer_, sql::Durability::process);
   const int wanted = static_cast<int>(priority);
+  const std::string begun = intake == Intake::begun ? " AND pass_index > 0" : "";
   std::optional<Task> task;
   switch (trial()) {
     case Trial::under_way:
@@ -69,8 +72,9 @@ std::optional<Task> SqliteJobStore::claim(Priority priority, const std::string& 
       task = claim_one("job_id IN (SELECT id FROM jobs WHERE suspect = 1)");
       break;
     case Trial::none:
-      if (!preferred.empty()) task = claim_one("priority = ? AND job_id = ?", wanted, preferred);
-      if (!task) task = claim_one("priority = ?", wanted);
+      if (!preferred.empty())
+        task = claim_one("priority = ? AND job_id = ?" + begun, wanted, preferred);
+      if (!task) task = claim_one("priority = ?" + begun, wanted);
   }
   if (!task) return std::nullopt;
   move(task->job_id, JobState::running);  // no move where it is running already

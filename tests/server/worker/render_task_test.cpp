@@ -126,8 +126,8 @@ TEST(RenderTaskTest, WhateverTheRendererThrowsFailsTheRenderAndNotTheWorker) {
   FakeRenderer renderer;
   TestService tested(folder.path(), renderer.engine());
   const std::vector<Failure> failures{
-      {[] { throw SceneError(SceneError::Part::environment, "cannot be read"); },
-       R"("pointer":"/scene/environment")"},
+      {[] { throw SceneError(SceneError::Part::camera, "it is behind the backdrop"); },
+       R"("pointer":"/scene/camera")"},
       {[] { throw std::bad_alloc(); }, "not enough memory"},
       {[] { throw std::runtime_error("a secret path"); }, "The renderer failed"}};
   for (const Failure& failure : failures) {
