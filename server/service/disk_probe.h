@@ -22,9 +22,11 @@ class DiskProbe {
 
   /// Why not; empty where it does.
   std::optional<std::string> failure();
+  /// The same for new work, whose pictures take so many bytes: they are counted from here on.
+  std::optional<std::string> refusal(std::uint64_t picture_bytes);
 
  private:
-  bool has_room() const;
+  void look();
 
   JobStore& store_;
   ArtifactStore& artifacts_;
@@ -33,10 +35,10 @@ class DiskProbe {
   std::mutex mutex_;
   std::optional<std::chrono::steady_clock::time_point> probed_at_;
   std::optional<std::string> failure_;
+  std::int64_t left_ = 0;  ///< of the disk, beside what was accepted [bytes]
 };
 
-/// What the job with the largest pictures needs beside them while it is worked on: its film, the
-/// one that takes its place, and a pass [bytes].
-inline std::uint64_t working_room(const OpenNeeds& needs) { return 4 * needs.largest; }
+/// What the job with the largest pictures needs while it is worked on: them, and its film [bytes].
+inline std::uint64_t working_room(std::uint64_t largest_pictures) { return 2 * largest_pictures; }
 
 }  // namespace translucube::server

@@ -78,6 +78,23 @@ bool Janitor::keep_within(std::uint64_t quota_bytes, std::uint64_t room) {
   return removed;
 }
 
+void Janitor::give_way(std::uint64_t room) {
+  if (artifacts_.free_bytes() >= room) return;
+  std::vector<std::string> begun;
+  for (const std::string& folder : artifacts_.ids())
+    if (is_id(folder))
+      if (const auto job = store_.find(folder); job && !api::is_end(job->state))
+        begun.push_back(folder);
+  std::ranges::sort(begun);
+  while (begun.size() > 1 && artifacts_.free_bytes() < room) {
+    if (store_.find(begun.back())->state == api::JobState::queued) {
+      spdlog::warn("render {}: its films give way on a full disk", begun.back());
+      artifacts_.remove_all(begun.back());
+    }
+    begun.pop_back();
+  }
+}
+
 void Janitor::remove_sheets() {
   for (const std::string& folder : artifacts_.ids())
     if (is_id(folder))

@@ -28,6 +28,9 @@ class Janitor {
   bool keep_within(std::uint64_t quota_bytes, std::uint64_t room);
   /// True if films of jobs that were begun take what the quota leaves: nothing more is to be begun.
   bool crowded() const { return crowded_; }
+  /// Where so many bytes are not free, removes films of renders that wait, of the newest first and
+  /// not of the oldest, which comes to its end then: they are traced again.
+  void give_way(std::uint64_t room);
   /// Removes some of the renders and sweeps that ended before this time, with the pictures that
   /// nothing else shows; how many.
   std::size_t forget_old(std::int64_t before_ms);

@@ -48,7 +48,7 @@ JobService::JobService(const api::Catalog& catalog, const ServerConfig& config,
   workers_ = std::make_unique<WorkerPool>(
       Workshop{catalog, store, artifacts, metrics, live_films_, explorables_, setbacks_, memory_,
                std::move(engine), config.threads_per_worker},
-      config.workers, [this] { changes_.tell(); }, [this] { return intake(); });
+      config.workers, [this] { changes_.tell(); }, [this](int others) { return intake(others); });
   house_keeper_ = std::jthread([this](std::stop_token ended) { keep_house(std::move(ended)); });
 }
 
@@ -62,8 +62,9 @@ void JobService::keep_house(std::stop_token ended) {
   while (!ended.stop_requested()) {
     try {
       store_.checkpoint();
-      const std::uint64_t room = working_room(store_.open_needs());
-      bool removed = janitor_.keep_within(config_.artifact_bytes, room);
+      room_ = working_room(store_.open_needs().largest);
+      bool removed = janitor_.keep_within(config_.artifact_bytes, room_);
+      janitor_.give_way(room_);
       if (janitor_.forget_old(system_clock_ms() - config_.keep_days * day_ms) > 0) {
         ended_.forget();
         removed = true;
@@ -76,16 +77,19 @@ void JobService::keep_house(std::stop_token ended) {
   }
 }
 
-Intake JobService::intake() const {
+/// What is begun must come to its end: each of those at work needs room for it.
+Intake JobService::intake(int others) const {
   try {
     folder_.check();
-  } catch (const StoreError&) {
-    return Intake::none;  // what is made would be lost
+    const auto at_work = static_cast<std::uint64_t>(others) + 1;
+    const bool room = darkroom_.artifacts.free_bytes() >= room_ * at_work;
+    return room && !janitor_.crowded() ? Intake::all : Intake::begun;
+  } catch (const std::exception&) {  // StoreError, FileError
+    return Intake::none;             // what is made would be lost
   }
-  return janitor_.crowded() ? Intake::begun : Intake::all;
 }
 
-std::optional<Problem> JobService::refusal() {
+std::optional<Problem> JobService::refusal() const {
   if (changes_.ended())
     return Problem{ProblemCode::overloaded, "The service is shutting down.", {}};
   try {
@@ -94,9 +98,13 @@ std::optional<Problem> JobService::refusal() {
     spdlog::error("{}", error.what());
     return Problem{ProblemCode::storage_failure, "The disk of the service cannot be used.", {}};
   }
-  if (auto failure = probe_.failure())
-    return Problem{ProblemCode::storage_failure, *std::move(failure), {}};
   return std::nullopt;
+}
+
+std::optional<Problem> JobService::no_room(std::uint64_t picture_bytes) {
+  auto reason = probe_.refusal(picture_bytes);
+  if (!reason) return std::nullopt;
+  return Problem{ProblemCode::storage_failure, *std::move(reason), {}};
 }
 
 std::optional<Problem> JobService::too_large(const api::RenderRequest& request, std::uint64_t lanes,
@@ -111,6 +119,7 @@ std::optional<Problem> JobService::too_large(const api::RenderRequest& request, 
 
 std::optional<std::string> JobService::unready_reason() {
   if (const auto problem = refusal()) return problem->detail;
+  if (auto failure = probe_.failure()) return failure;
   return setbacks_.of_service();
 }
 

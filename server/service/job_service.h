@@ -130,10 +130,11 @@ class JobService {
   void shut_down(std::chrono::milliseconds drain = {});
 
  private:
-  std::optional<api::Problem> refusal();
+  std::optional<api::Problem> refusal() const;
+  std::optional<api::Problem> no_room(std::uint64_t picture_bytes);
   std::optional<api::Problem> too_large(const api::RenderRequest& request, std::uint64_t lanes,
                                         const char* pointer) const;
-  Intake intake() const;
+  Intake intake(int others) const;
   void keep_house(std::stop_token ended);
   void stop_work(const std::string& job_id);
   void discard(const std::vector<StoredResult>& unused);
@@ -155,6 +156,7 @@ class JobService {
   Recent<std::pair<std::string, ImageQuery>, ImageFile> pictures_{256, std::chrono::seconds(1)};
   Setbacks setbacks_;
   MemoryBudget memory_;
+  std::atomic<std::uint64_t> room_ = 0;  ///< on the disk, for a job that is worked on
   std::unique_ptr<WorkerPool> workers_;
   std::jthread house_keeper_;
 };

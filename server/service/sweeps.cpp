@@ -47,6 +47,7 @@ Result<SweepSubmission> JobService::submit_sweep(
       std::ranges::max(sweep.images, {}, &std::vector<Picture>::size).size();
   if (const auto problem = too_large(request->base, most_lanes, "/base/image")) return *problem;
   return guarded([&]() -> Result<SweepSubmission> {
+    if (const auto problem = no_room(request->point_count() * sweep.picture_bytes)) return *problem;
     for (const std::vector<Picture>& lanes : sweep.images)
       for (const Picture& lane : lanes)
         whole_result(store_, darkroom_.artifacts, lane.content, Look::quick);

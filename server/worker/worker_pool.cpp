@@ -14,7 +14,7 @@ constexpr unsigned interactive_share = 3;  ///< interactive tasks for one of a b
 constexpr int nicer_than_others = 10;
 
 WorkerPool::WorkerPool(Workshop workshop, int workers, std::function<void()> on_change,
-                       std::function<Intake()> intake)
+                       std::function<Intake(int others)> intake)
     : workshop_(std::move(workshop)),
       on_change_(std::move(on_change)),
       intake_(std::move(intake)),
@@ -51,7 +51,10 @@ void WorkerPool::stop_job(const std::string& id) {
 
 std::optional<Task> WorkerPool::claim(int worker, const std::string& in_hand) {
   JobStore& store = workshop_.store;
-  const Intake intake = intake_();
+  const Intake intake = intake_([&] {
+    const std::lock_guard lock(mutex_);
+    return static_cast<int>(running_.size());
+  }());
   if (workers_ > 1 && worker == 0) return store.claim(Priority::interactive, in_hand, intake);
   const bool batch_first = turns_++ % (interactive_share + 1) == interactive_share;
   const Priority first = batch_first ? Priority::batch : Priority::interactive;

@@ -13,7 +13,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 /// Its first pass takes far longer than a test.
-std::string endless(int seed) { return small_request(4, seed, sanitized ? 512 : 2048); }
+std::string endless(int seed) { return small_request(4, seed, sanitized ? 1024 : 4096); }
 
 std::string post(const Service& service, const std::string& request) {
   const auto posted = service.client().Post("/v1/renders", request, "application/json");
