@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "picture/image_io.h"
+#include "server/base/crash_mark.h"
 #include "server/base/log.h"
 #include "server/base/signals.h"
 #include "server/calls/front.h"
@@ -124,6 +125,8 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   StoreOptions queue;
   queue.most_queued = config.queue_length;
   queue.interactive_seconds = config.interactive_seconds;
+  queue.last_crashed = take_crash_mark(folder.crash_mark());
+  mark_crashes(folder.crash_mark());
   const auto store = open_job_store(folder.store_file(), queue);
   ArtifactStore artifacts(folder.artifacts());
   Metrics metrics;

@@ -102,7 +102,8 @@ std::optional<Problem> JobService::refusal() const {
 }
 
 std::optional<Problem> JobService::no_room(std::uint64_t picture_bytes) {
-  auto reason = probe_.refusal(picture_bytes);
+  auto reason = setbacks_.of_disk();
+  if (!reason) reason = probe_.refusal(picture_bytes);
   if (!reason) return std::nullopt;
   return Problem{ProblemCode::storage_failure, *std::move(reason), {}};
 }
@@ -125,6 +126,7 @@ std::optional<std::string> JobService::unready_reason() {
 
 void JobService::stop_work(const std::string& job_id) {
   workers_->stop_job(job_id);
+  setbacks_.clear(job_id);
   janitor_.discard(job_id);
 }
 

@@ -73,8 +73,8 @@ class JobStore {
 
   // The end of the process. A store that is opened again frees the tasks that were held when its
   // last process died. Their jobs are suspects: each is worked on alone, before all others, until a
-  // pass of it is complete. One that was alone at a death, and there at one before since its last
-  // complete pass, has failed.
+  // pass of it is complete. One that was alone at two deaths, with no complete pass between, has
+  // failed; at four, where the process was killed from outside before the task was renewed once.
   /// This process ends as it was told to: what it holds when it does is not suspect.
   virtual void announce_end() = 0;
 
@@ -113,6 +113,7 @@ struct StoreOptions {
   Clock lease_clock = monotonic_clock_ms;  ///< leases and delays: it never jumps
   std::uint64_t most_queued = 20'000;      ///< jobs that have not ended
   double interactive_seconds = 10;         ///< a render that has been traced longer is batch work
+  bool last_crashed = false;  ///< the last process ended by a fault of its own (crash_mark.h)
 };
 
 /// Opens or creates the store at a location: the file of an SQLite database, or ":memory:" for one

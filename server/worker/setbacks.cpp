@@ -25,12 +25,20 @@ void Setbacks::clear(const std::string& job_id) {
   entries_.erase(job_id);
 }
 
-std::optional<std::string> Setbacks::of_service() const {
+std::optional<std::string> Setbacks::told_of(bool (*of)(Setback::Of)) const {
   const auto now = Clock::now();
   const std::lock_guard lock(mutex_);
   for (const auto& [id, entry] : entries_)
-    if (entry.of == Setback::Of::service && entry.until >= now) return entry.told;
+    if (of(entry.of) && entry.until >= now) return entry.told;
   return std::nullopt;
+}
+
+std::optional<std::string> Setbacks::of_disk() const {
+  return told_of([](Setback::Of of) { return of == Setback::Of::disk; });
+}
+
+std::optional<std::string> Setbacks::of_service() const {
+  return told_of([](Setback::Of of) { return of != Setback::Of::request; });
 }
 
 std::uint64_t Setbacks::count() const {

@@ -14,8 +14,8 @@
 namespace translucube::server {
 
 struct Setback : std::runtime_error {
-  /// Of what the service itself has, or of a file that the request names.
-  enum class Of { service, request };
+  /// Of the disk, of what else the service itself has, or of a file that the request names.
+  enum class Of { disk, service, request };
   Of of;
   std::string told;  ///< to whoever asks whether the service is ready: no inner detail
   Setback(Of whose, std::string to_clients, const std::string& what)
@@ -29,7 +29,9 @@ class Setbacks {
   int add(const std::string& job_id, const Setback& setback, std::chrono::milliseconds wait);
   void clear(const std::string& job_id);  ///< it goes on, or has ended
 
-  /// Why work waits for the service; empty if none does.
+  /// Why work waits for the disk; empty if none does.
+  std::optional<std::string> of_disk() const;
+  /// The same for the disk or something else of the service.
   std::optional<std::string> of_service() const;
   std::uint64_t count() const;
 
@@ -41,6 +43,8 @@ class Setbacks {
     int times = 0;
     Clock::time_point until;  ///< then it was tried again, or is no more
   };
+  std::optional<std::string> told_of(bool (*of)(Setback::Of)) const;
+
   mutable std::mutex mutex_;
   std::map<std::string, Entry> entries_;
 };

@@ -20,9 +20,9 @@ namespace {
 
 using api::ProblemCode;
 
-// What is refused so often in a row, though all that it needs can be read, or nothing else takes
-// memory, is refused for good.
-constexpr int most_refusals = 3;
+// What is refused so often in a row, though its file can be read, or though a share of the memory
+// was free for it, is refused for good.
+constexpr int most_refusals = 3, most_without_memory = 5;
 constexpr std::int64_t shortest_wait_ms = 500, longest_wait_ms = 30'000;
 
 constexpr std::int64_t wait_for_memory_ms = 300;
@@ -75,15 +75,15 @@ void TaskRunner::settle(const Task& task) {
   } catch (const Setback& setback) {
     wait(task, setback);
   } catch (const StoreError& error) {
-    wait(task, {Setback::Of::service, disk_refuses, error.what()});
+    wait(task, {Setback::Of::disk, disk_refuses, error.what()});
   } catch (const FileError& error) {
-    wait(task, {Setback::Of::service, disk_refuses, error.what()});
+    wait(task, {Setback::Of::disk, disk_refuses, error.what()});
   } catch (const SceneError& error) {
     if (requests.empty()) throw;
     refuse(task, requests.front(), error);
   } catch (const std::bad_alloc& error) {
     if (!wait(task, {Setback::Of::service, "There is too little memory.", error.what()},
-              most_refusals))
+              most_without_memory))
       fail(task,
            {ProblemCode::internal, "There is not enough memory for a render of this size.", {}});
   } catch (const std::system_error& error) {

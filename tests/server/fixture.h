@@ -116,6 +116,7 @@ struct ServiceOptions {
   StoreOptions store{};
   std::uint64_t memory_bytes = 0;
   std::uint64_t artifact_bytes = std::uint64_t{20} << 30;
+  int keep_days = 36'500;  // stores of old versions are of old dates
 };
 
 /// The whole service but its socket.
@@ -188,6 +189,7 @@ class TestService {
     config.threads_per_worker = 1;
     config.memory_bytes = options.memory_bytes;
     config.artifact_bytes = options.artifact_bytes;
+    config.keep_days = options.keep_days;
     return config;
   }
 };

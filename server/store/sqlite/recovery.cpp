@@ -18,8 +18,10 @@ using sql::Transaction;
 
 namespace {
 
-// Of the process, since the last pass of the job that was complete.
-constexpr int most_deaths = 2;
+// Deaths at which the job was alone, since its last complete pass. A kill from outside that comes
+// soon after the start of a task says little of it, but where it comes again and again: so ends
+// what takes all memory at once.
+constexpr int most_deaths = 2, most_early_kills = 4;
 
 std::vector<std::string> first_column(sql::Connection& writer, const char* query) {
   std::vector<std::string> texts;
@@ -39,6 +41,9 @@ bool ended_as_told(sql::Connection& writer) {
 void SqliteJobStore::take_over() {
   std::vector<std::string> suspects = first_column(
       writer_, "SELECT DISTINCT job_id FROM tasks WHERE state <> 'done' AND state = 'leased'");
+  const bool was_long =
+      !first_column(writer_, "SELECT job_id FROM tasks WHERE state = 'leased' AND renewed = 1")
+           .empty();
   if (ended_as_told(writer_)) suspects.clear();
   Statement(writer_, "UPDATE process SET ends_as_told = 0").run();
   Statement(writer_,
@@ -46,18 +51,20 @@ void SqliteJobStore::take_over() {
             "WHERE state <> 'done'")
       .run();
   for (const std::string& id : suspects)
-    Statement(writer_, "UPDATE jobs SET deaths = deaths + 1, suspect = 1 WHERE id = ?")
-        .bind(id)
-        .run();
-  if (suspects.size() == 1) judge(suspects.front());  // of more, each is tried alone
+    Statement(writer_, "UPDATE jobs SET suspect = 1 WHERE id = ?").bind(id).run();
+  if (suspects.size() == 1) judge(suspects.front(), options_.last_crashed || was_long);
   for (const std::string& id : first_column(writer_, "SELECT id FROM jobs WHERE state = 'running'"))
     move(id, JobState::queued);
 }
 
-/// Fails the job that was alone at the death of the last process, if it was there at too many.
-void SqliteJobStore::judge(const std::string& id) {
-  Statement deaths(writer_, "SELECT deaths FROM jobs WHERE id = ?");
-  if (!deaths.bind(id).step() || deaths.integer(0) < most_deaths) return;
+/// Charges the job that was alone at the death of the last process, and fails it if that was one
+/// too many.
+void SqliteJobStore::judge(const std::string& id, bool for_sure) {
+  Statement charge(writer_, "UPDATE jobs SET deaths = deaths + 1 WHERE id = ? RETURNING deaths");
+  if (!charge.bind(id).step()) return;
+  const std::int64_t deaths = charge.integer(0);
+  charge.run();
+  if (deaths < (for_sure ? most_deaths : most_early_kills)) return;
   spdlog::error("render {} failed: {}", id, ended_the_process().detail);
   rows::delete_open_tasks(writer_, id);
   Statement(writer_, "UPDATE jobs SET error = ? WHERE id = ?")

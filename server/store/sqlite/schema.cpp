@@ -107,6 +107,7 @@ ALTER TABLE jobs DROP COLUMN image;
 constexpr const char* from_2_to_3 = R"sql(
 ALTER TABLE jobs ADD COLUMN deaths INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE jobs ADD COLUMN suspect INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE tasks ADD COLUMN renewed INTEGER NOT NULL DEFAULT 0;
 CREATE INDEX jobs_suspect ON jobs(id) WHERE suspect = 1;
 CREATE TABLE process(
   id INTEGER PRIMARY KEY CHECK (id = 1),

@@ -82,7 +82,7 @@ class SqliteJobStore final : public JobStore {
   void insert_results(const std::vector<StoredResult>& results);
   std::vector<StoredResult> drop_unused_results(const std::vector<std::string>& contents);
   void take_over();
-  void judge(const std::string& id);
+  void judge(const std::string& id, bool for_sure);
   enum class Trial { none, due, under_way };
   Trial trial();
   template <typename... Values>

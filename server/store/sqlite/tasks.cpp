@@ -36,7 +36,7 @@ std::optional<Task> SqliteJobStore::claim_one(const std::string& condition,
   const std::int64_t now = options_.lease_clock();
   Statement statement(writer_, R"sql(
 UPDATE tasks SET state = 'leased', owner = ?, lease_until_ms = ?,
-                 fencing_token = fencing_token + 1, attempts = attempts + 1
+                 fencing_token = fencing_token + 1, attempts = attempts + 1, renewed = 0
 WHERE (job_id, pass_index) = (
   SELECT job_id, pass_index FROM tasks
   WHERE state <> 'done' AND ((state = 'ready' AND not_before_ms <= ?)
@@ -91,7 +91,9 @@ bool SqliteJobStore::holds(const Task& task) {
 
 bool SqliteJobStore::renew(const Task& task) {
   return while_held(task, [&] {
-    Statement(writer_, "UPDATE tasks SET lease_until_ms = ? WHERE job_id = ? AND pass_index = ?")
+    Statement(
+        writer_,
+        "UPDATE tasks SET lease_until_ms = ?, renewed = 1 WHERE job_id = ? AND pass_index = ?")
         .bind(options_.lease_clock() + options_.lease_ms, task.job_id, task.pass.index)
         .run();
     return true;

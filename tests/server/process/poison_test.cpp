@@ -28,6 +28,8 @@ std::string state_of(const Service& service, const std::string& location) {
 void dies_while_it_runs(const Service& service, Process& process, const std::string& location,
                         int signal) {
   ASSERT_TRUE(eventually([&] { return state_of(service, location) == "running"; }));
+  // A kill from outside says something of a task that takes its time.
+  if (signal == SIGKILL) std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   process.kill(signal);
   ASSERT_EQ(process.wait(), -signal);
 }

@@ -21,10 +21,13 @@ using testing::HasSubstr;
 class RecoveryTest : public testing::Test {
  protected:
   RecoveryTest() { start(); }
-  void start() {
+  void start(bool after_a_crash = true) {
     store.reset();  // the file is closed as the kernel closes it
-    store = open_job_store(folder_ / "jobs.sqlite",
-                           {.lease_ms = 1000, .lease_clock = [this] { return now; }});
+    StoreOptions options;
+    options.lease_ms = 1000;
+    options.lease_clock = [this] { return now; };
+    options.last_crashed = after_a_crash;
+    store = open_job_store(folder_ / "jobs.sqlite", options);
   }
   void end_as_told() {
     store->announce_end();
@@ -42,7 +45,7 @@ class RecoveryTest : public testing::Test {
   TempFolder folder_;
 };
 
-TEST_F(RecoveryTest, AJobThatWasRunningAtTwoDeathsHasFailedAndSaysSo) {
+TEST_F(RecoveryTest, AJobThatWasAloneAtTwoDeathsHasFailedAndSaysSo) {
   const std::string poison = submit(*store);
   ASSERT_EQ(claim()->job_id, poison);
   start();
@@ -54,6 +57,23 @@ TEST_F(RecoveryTest, AJobThatWasRunningAtTwoDeathsHasFailedAndSaysSo) {
   EXPECT_FALSE(claim());
   const auto events = store->events_after(poison, 0);
   EXPECT_THAT(events.back().data, HasSubstr("failed"));
+}
+
+TEST_F(RecoveryTest, AKillFromOutsideIsNoCrashUnlessTheTaskTookItsTime) {
+  const std::string early = submit(*store);
+  for (int kill = 1; kill <= 4; ++kill) {
+    EXPECT_EQ(state(early), JobState::queued) << kill;
+    ASSERT_EQ(claim()->job_id, early);
+    start(false);
+  }
+  EXPECT_EQ(state(early), JobState::failed);
+  const std::string late = submit(*store);
+  for (int kill = 1; kill <= 2; ++kill) {
+    EXPECT_EQ(state(late), JobState::queued) << kill;
+    ASSERT_TRUE(store->renew(*claim()));
+    start(false);
+  }
+  EXPECT_EQ(state(late), JobState::failed);
 }
 
 TEST_F(RecoveryTest, AnImageOfASweepFailsAloneAndItsSweepGoesOn) {
@@ -82,6 +102,8 @@ TEST_F(RecoveryTest, OfThoseThatWereInHandAtADeathEachIsTriedAloneAndOnlyTheGuil
   const Task second = *claim();
   EXPECT_EQ(second.job_id, poison) << "the other suspect before all that is not suspect";
   EXPECT_FALSE(claim());
+  start();
+  EXPECT_EQ(claim()->job_id, poison);
   start();
 
   EXPECT_EQ(state(poison), JobState::failed);

@@ -251,7 +251,9 @@ TEST(RenderTaskTest, ARenderThatEndedTheProcessTwiceIsNotTracedAgain) {
     ASSERT_TRUE(store->claim(Priority::interactive));  // and the process dies with it
   }
   FakeRenderer renderer;
-  TestService tested(folder.path(), renderer.engine());
+  ServiceOptions options;
+  options.store.last_crashed = true;
+  TestService tested(folder.path(), renderer.engine(), options);
   EXPECT_EQ(tested.wait(id).state, JobState::failed);
   EXPECT_EQ(renderer.passes, 0);
   EXPECT_THAT(tested.artifacts.names(id), IsEmpty());
