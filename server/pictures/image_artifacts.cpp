@@ -163,10 +163,10 @@ std::shared_ptr<const OpenFile> derived_file(Darkroom& darkroom, const StoredRes
   if (auto file = known()) return file;
   const std::lock_guard lock(busy);
   if (auto file = known()) return file;  // another request has made it meanwhile
-  Image image = read_image(artifacts.path(content, result.image));
+  const Image image = read_image(artifacts.path(content, result.image));
   name = write_picture(artifacts, content, stem, extension,
                        [&](const std::filesystem::path& temporary) {
-                         write_form(temporary, std::move(image), form, colors, request);
+                         write_form(temporary, image, form, colors, request);
                        });
   store.resize_result(content, artifacts.bytes(content));
   return artifacts.open(content, name);

@@ -58,27 +58,38 @@ fs::path ArtifactStore::path(const std::string& id, const std::string& name) con
   return root_ / id / name;
 }
 
-void ArtifactStore::write(const std::string& id, const std::string& name, std::string_view bytes) {
-  make_folder(root_ / id);
-  write_atomically(path(id, name), bytes);
+/// Runs `write` with the folder there. Another thread may remove it just then, as empty.
+void ArtifactStore::in_folder(const std::string& id, const std::function<void()>& write) {
+  constexpr int most_tries = 3;
+  for (int tries = 1;; ++tries) try {
+      make_folder(root_ / id);
+      write();
+      break;
+    } catch (const FileError&) {
+      std::error_code error;
+      if (tries == most_tries || fs::exists(root_ / id, error) || !fs::exists(root_, error)) throw;
+    }
   count(id);
+}
+
+void ArtifactStore::write(const std::string& id, const std::string& name, std::string_view bytes) {
+  in_folder(id, [&] { write_atomically(path(id, name), bytes); });
 }
 
 void ArtifactStore::write(const std::string& id, const std::string& name,
                           const std::function<void(const fs::path&)>& writer) {
-  make_folder(root_ / id);
-  write_atomically(path(id, name), writer);
-  count(id);
+  in_folder(id, [&] { write_atomically(path(id, name), writer); });
 }
 
 std::string ArtifactStore::write_hashed(const std::string& id, const std::string& stem,
                                         const std::string& extension,
                                         const std::function<void(const fs::path&)>& writer) {
-  make_folder(root_ / id);
-  const fs::path written = write_atomically_named(
-      root_ / id, extension, writer,
-      [&](const OpenFile& file) { return path(id, stem + '.' + hash_of(file) + extension); });
-  count(id);
+  fs::path written;
+  in_folder(id, [&] {
+    written = write_atomically_named(root_ / id, extension, writer, [&](const OpenFile& file) {
+      return path(id, stem + '.' + hash_of(file) + extension);
+    });
+  });
   return written.filename().string();
 }
 

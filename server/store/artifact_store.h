@@ -80,6 +80,7 @@ class ArtifactStore {
   void remove_films(const std::string& id);
 
  private:
+  void in_folder(const std::string& id, const std::function<void()>& write);
   void count(const std::string& id);
 
   std::filesystem::path root_;

@@ -39,8 +39,10 @@ std::optional<DataFolder::Identity> DataFolder::identity(const fs::path& path) {
 FileDescriptor DataFolder::locked(const fs::path& path, int flags) const {
   FileDescriptor file(::open(path.c_str(), flags | O_CLOEXEC, 0600));
   if (!file) refuse(std::strerror(errno));
-  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0)
-    refuse(errno == EWOULDBLOCK ? "another translucube serves it" : std::strerror(errno));
+  if (::flock(file.get(), LOCK_EX | LOCK_NB) == 0) return file;
+  if (errno == EWOULDBLOCK) refuse("another translucube serves it");
+  // Network file systems lock only what can be written: there the file in the folder serves alone.
+  if ((flags & O_DIRECTORY) == 0) refuse(std::strerror(errno));
   return file;
 }
 

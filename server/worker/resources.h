@@ -6,7 +6,7 @@
 
 #include "api/base/problem.h"
 #include "api/request/catalog.h"
-#include "renderer/scene/spec.h"
+#include "renderer/render.h"
 #include "server/worker/setbacks.h"
 
 namespace translucube::server {

@@ -25,20 +25,20 @@ void Setbacks::clear(const std::string& job_id) {
   entries_.erase(job_id);
 }
 
-std::optional<std::string> Setbacks::told_of(bool (*of)(Setback::Of)) const {
+std::optional<std::string> Setbacks::told_of(bool (*of)(Setback::Of), int least) const {
   const auto now = Clock::now();
   const std::lock_guard lock(mutex_);
   for (const auto& [id, entry] : entries_)
-    if (of(entry.of) && entry.until >= now) return entry.told;
+    if (of(entry.of) && entry.times >= least && entry.until >= now) return entry.told;
   return std::nullopt;
 }
 
 std::optional<std::string> Setbacks::of_disk() const {
-  return told_of([](Setback::Of of) { return of == Setback::Of::disk; });
+  return told_of([](Setback::Of of) { return of == Setback::Of::disk; }, 2);
 }
 
 std::optional<std::string> Setbacks::of_service() const {
-  return told_of([](Setback::Of of) { return of != Setback::Of::request; });
+  return told_of([](Setback::Of of) { return of != Setback::Of::request; }, 1);
 }
 
 std::uint64_t Setbacks::count() const {

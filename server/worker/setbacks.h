@@ -29,7 +29,7 @@ class Setbacks {
   int add(const std::string& job_id, const Setback& setback, std::chrono::milliseconds wait);
   void clear(const std::string& job_id);  ///< it goes on, or has ended
 
-  /// Why work waits for the disk; empty if none does.
+  /// Why work waits for the disk, for the second time in a row; empty if none does.
   std::optional<std::string> of_disk() const;
   /// The same for the disk or something else of the service.
   std::optional<std::string> of_service() const;
@@ -43,7 +43,7 @@ class Setbacks {
     int times = 0;
     Clock::time_point until;  ///< then it was tried again, or is no more
   };
-  std::optional<std::string> told_of(bool (*of)(Setback::Of)) const;
+  std::optional<std::string> told_of(bool (*of)(Setback::Of), int least) const;
 
   mutable std::mutex mutex_;
   std::map<std::string, Entry> entries_;

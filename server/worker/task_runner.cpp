@@ -197,7 +197,8 @@ bool TaskRunner::wait(const Task& task, const Setback& setback, int most) {
   if (times >= most) return false;
   if ((times & (times - 1)) == 0)
     spdlog::warn("render {}: {}; again in {} ms", task.job_id, setback.what(), delay.count());
-  workshop_.store.release(task, delay.count(), true);
+  // Of a job that was canceled, or that another works on, nothing waits.
+  if (!workshop_.store.release(task, delay.count(), true)) workshop_.setbacks.clear(task.job_id);
   return true;
 }
 

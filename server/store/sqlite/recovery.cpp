@@ -4,7 +4,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "api/base/problem.h"
 #include "server/store/refusals.h"
 #include "server/store/sqlite/rows.h"
 #include "server/store/sqlite/sqlite_job_store.h"

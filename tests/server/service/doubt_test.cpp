@@ -214,5 +214,30 @@ TEST(DoubtTest, ARequestWhosePictureIsLostIsTracedAgainAtOnce) {
   EXPECT_FALSE(tested.exr(again.id).empty());
 }
 
+TEST(DoubtTest, ASheetShowsAPictureThatWasLostOnlyUntilItIsMadeAgain) {
+  const TempFolder folder;
+  FakeRenderer renderer;
+  TestService tested(folder.path(), renderer.engine());
+  const std::string request =
+      R"({"base":{"material":{"cube":{"absorption":0.3,"roughness":0.3,"scattering":0.5}},)"
+      R"("image":{"width":64,"height":64},"quality":{"samples":4}},)"
+      R"("axes":{"roughness":[0.1,0.2]}})";
+  const auto made = [&] {
+    const std::string id = tested.service.submit_sweep(request, {})->status.id;
+    EXPECT_TRUE(eventually([&] { return api::is_end(tested.service.get_sweep(id)->state); }));
+    return id;
+  };
+  const std::string sweep = made();
+  const auto sheet = [&] {
+    return tested.service.sheet(sweep, form(ImageFormat::png))->file->read_all();
+  };
+  const std::string whole = sheet();
+  const std::string content = tested.store.picture_of_point(sweep, 0)->content;
+  fs::remove(tested.artifacts.path(content, tested.store.find_result(content)->image));
+  EXPECT_NE(sheet(), whole);
+  made();
+  EXPECT_EQ(sheet(), whole);
+}
+
 }  // namespace
 }  // namespace translucube::server::test
