@@ -15,19 +15,19 @@ using testing::HasSubstr;
 /// Its first pass takes far longer than a test.
 std::string endless(int seed) { return small_request(4, seed, sanitized ? 1024 : 4096); }
 
-std::string post(const Service& service, const std::string& request) {
+std::string post_render(const Service& service, const std::string& request) {
   const auto posted = service.client().Post("/v1/renders", request, "application/json");
   return posted ? posted->get_header_value("Location") : std::string();
 }
 
-std::string state_of(const Service& service, const std::string& location) {
+std::string told_state(const Service& service, const std::string& location) {
   const json status = service.get(location);
   return status.is_object() ? std::string(status["state"]) : "";
 }
 
 void dies_while_it_runs(const Service& service, Process& process, const std::string& location,
                         int signal) {
-  ASSERT_TRUE(eventually([&] { return state_of(service, location) == "running"; }));
+  ASSERT_TRUE(eventually([&] { return told_state(service, location) == "running"; }));
   // A kill from outside says something of a task that takes its time.
   if (signal == SIGKILL) std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   process.kill(signal);
@@ -40,15 +40,15 @@ TEST(PoisonTest, ARenderThatEndsTheServiceTwiceHasFailedAndTheServiceComesUp) {
     std::string poison;
     for (int start = 0; start < 2; ++start) {
       Service service(folder / "data");
-      if (start == 0) poison = post(service, endless(1));
+      if (start == 0) poison = post_render(service, endless(1));
       dies_while_it_runs(service, service.process(), poison, signal);
     }
     Service service(folder / "data");
     const json status = service.get(poison);
     EXPECT_EQ(status["state"], "failed") << status.dump();
     EXPECT_THAT(status["error"].dump(), HasSubstr("ended twice while it worked on this"));
-    const std::string next = post(service, small_request(4));
-    EXPECT_TRUE(eventually([&] { return state_of(service, next) == "succeeded"; }));
+    const std::string next = post_render(service, small_request(4));
+    EXPECT_TRUE(eventually([&] { return told_state(service, next) == "succeeded"; }));
   }
 }
 
@@ -57,14 +57,14 @@ TEST(PoisonTest, AServiceToldToEndIsNoDeathHoweverOftenAPassIsCutOff) {
   std::string location;
   for (int start = 0; start < 3; ++start) {
     Service service(folder / "data");
-    if (start == 0) location = post(service, endless(2));
-    ASSERT_TRUE(eventually([&] { return state_of(service, location) == "running"; }));
+    if (start == 0) location = post_render(service, endless(2));
+    ASSERT_TRUE(eventually([&] { return told_state(service, location) == "running"; }));
     service.process().kill(SIGTERM);
     if (start == 1) service.process().kill(SIGTERM);  // at once
     service.process().wait();
   }
   Service service(folder / "data");
-  EXPECT_TRUE(eventually([&] { return state_of(service, location) == "running"; }));
+  EXPECT_TRUE(eventually([&] { return told_state(service, location) == "running"; }));
   service.client().Post(location + "/cancel", "", "");
 }
 
