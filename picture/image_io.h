@@ -24,6 +24,9 @@ struct ImageError : std::runtime_error {
 /// Begins to load what files other than EXR need, 0.3 s, on a thread of its own: for those who will
 /// read or write one soon. Nothing else has to call it.
 void prepare_image_codecs();
+/// Waits for that, if it was begun: the end of the process must not come upon libraries that are
+/// being loaded. For the last line of main.
+void finish_image_codecs();
 
 /// What a picture carries beside its pixels.
 struct ImageMetadata {

@@ -38,10 +38,13 @@ std::string to_json(const RenderStatus& status) {
 std::string render_list_json(const std::vector<RenderStatus>& renders,
                              const std::optional<std::string>& next_cursor) {
   std::string list = R"({"renders":[)";
-  for (const RenderStatus& status : renders) {
-    if (&status != &renders.front()) list += ',';
-    list += to_json(status);
-  }
+  for (const RenderStatus& status : renders) try {
+      const std::string told = to_json(status);
+      if (list.back() != '[') list += ',';
+      list += told;
+    } catch (const std::invalid_argument&) {
+      // Of a damaged store: the others are told.
+    }
   return list + R"(],"next_cursor":)" + value_or_null(next_cursor).dump() + '}';
 }
 

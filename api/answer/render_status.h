@@ -32,7 +32,8 @@ struct RenderStatus {
 /// one of the JSON texts is none (a corrupt store).
 std::string to_json(const RenderStatus& status);
 
-/// The answer to GET /v1/renders: {"renders": [...], "next_cursor": "..." or null}.
+/// The answer to GET /v1/renders: {"renders": [...], "next_cursor": "..." or null}. Without those
+/// whose JSON texts are none.
 std::string render_list_json(const std::vector<RenderStatus>& renders,
                              const std::optional<std::string>& next_cursor);
 

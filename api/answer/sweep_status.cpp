@@ -37,7 +37,7 @@ json result_object(const SweepStatus& status, const SweepImageStatus& image, con
       {"roughness", sweep.roughness[place.roughness]},
       {"scattering", sweep.scattering[place.scattering]},
       {"absorber", absorber_label(sweep, place.absorber)},
-      {"seed", point_request(sweep, point).seed},
+      {"seed", point_seed(sweep, point)},
       {"state", name(image.state)},
       {"samples", stats.is_object() ? stats.value("samples", json()) : json()},
       {"relative_error", stats.is_object() ? stats.value("relative_error", json()) : json()},

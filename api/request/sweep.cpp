@@ -20,7 +20,7 @@ std::uint64_t mixed(std::uint64_t x) {
 }
 
 /// Every integer up to 2^53 is exact in every JSON reader.
-std::uint64_t point_seed(std::uint64_t seed, double roughness, double scattering) {
+std::uint64_t mixed_seed(std::uint64_t seed, double roughness, double scattering) {
   std::uint64_t state = mixed(seed + 0x9e3779b97f4a7c15u);
   state = mixed(state ^ std::bit_cast<std::uint64_t>(roughness));
   state = mixed((state + 0x9e3779b97f4a7c15u) ^ std::bit_cast<std::uint64_t>(scattering));
@@ -61,8 +61,14 @@ RenderRequest point_request(const Sweep& sweep, std::size_t point) {
   RenderRequest request = sweep.base;
   request.material.point = CubePoint{sweep.absorption[place.absorption], roughness, scattering};
   request.material.absorber = sweep.absorbers[place.absorber];
-  request.seed = point_seed(sweep.base.seed, roughness, scattering);
+  request.seed = mixed_seed(sweep.base.seed, roughness, scattering);
   return request;
+}
+
+std::uint64_t point_seed(const Sweep& sweep, std::size_t point) {
+  const SweepPlace place = place_of(sweep, point);
+  return mixed_seed(sweep.base.seed, sweep.roughness[place.roughness],
+                    sweep.scattering[place.scattering]);
 }
 
 std::vector<std::vector<std::size_t>> traced_images(const Sweep& sweep, const Limits& limits) {

@@ -38,6 +38,7 @@ SweepPlace place_of(const Sweep& sweep, std::size_t point);
 /// The point as a request of its own, which gives the same bits. Its seed is told from the base's
 /// seed, the roughness and the scattering: whatever else the sweep has, the point stays as it is.
 RenderRequest point_request(const Sweep& sweep, std::size_t point);
+std::uint64_t point_seed(const Sweep& sweep, std::size_t point);  ///< its seed alone
 
 /// The points that are developed from one tracing, the least absorbing first (it decides where a
 /// relative_error stops). At most so many that their film has no more pixels than the largest image

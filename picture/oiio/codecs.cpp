@@ -35,15 +35,28 @@ const ImageCodecs& image_codecs() {
   return *codecs;
 }
 
+namespace {
+
+std::future<void>& loading() {
+  static std::future<void> thread;
+  return thread;
+}
+
+}  // namespace
+
 void prepare_image_codecs() {
-  // Static: the end of the process waits for it.
-  static const std::future<void> loading = std::async(std::launch::async, [] {
+  if (loading().valid()) return;
+  loading() = std::async(std::launch::async, [] {
     try {
       image_codecs();
     } catch (const ImageError&) {
       // Whoever needs a codec tries again and is told.
     }
   });
+}
+
+void finish_image_codecs() {
+  if (loading().valid()) loading().wait();
 }
 
 }  // namespace translucube

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -22,6 +24,7 @@ class Turns {
     const int turn = next_++;
     return turn < count_ ? std::optional(turn) : std::nullopt;
   }
+  void end() { next_ = count_; }  ///< nobody gets another
 
  private:
   std::atomic<int> next_ = 0;
@@ -29,14 +32,31 @@ class Turns {
 };
 
 /// Calls worker(turns) on `threads` threads (0: all cores), this one among them, for workers that
-/// keep something from one turn to the next.
+/// keep something from one turn to the next. Where the machine has no more threads, fewer do it.
+/// What a worker throws ends the turns and is thrown here.
 template <class Worker>
 void share_turns(int threads, int count, Worker&& worker) {
   Turns turns(count);
-  const auto work = [&] { worker(turns); };
-  std::vector<std::jthread> helpers;
-  for (int t = 1; t < std::min(thread_count(threads), count); ++t) helpers.emplace_back(work);
-  work();
+  std::mutex mutex;
+  std::exception_ptr thrown;
+  const auto work = [&]() noexcept {
+    try {
+      worker(turns);
+    } catch (...) {
+      turns.end();
+      const std::lock_guard lock(mutex);
+      if (!thrown) thrown = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    try {
+      for (int t = 1; t < std::min(thread_count(threads), count); ++t) helpers.emplace_back(work);
+    } catch (const std::exception&) {  // std::system_error, std::bad_alloc
+    }
+    work();
+  }
+  if (thrown) std::rethrow_exception(thrown);
 }
 
 /// Calls work(i) for every i < count, on `threads` threads (0: all cores).

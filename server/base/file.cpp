@@ -38,8 +38,10 @@ void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
 }
 
 std::string version_of(const struct stat& status) {
-  return std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec) +
-         '.' + std::to_string(status.st_size);
+  std::string version = std::to_string(status.st_size);
+  for (const timespec& time : {status.st_mtim, status.st_ctim})
+    version += '.' + std::to_string(time.tv_sec) + '.' + std::to_string(time.tv_nsec);
+  return version;
 }
 
 /// Removes a file when it goes out of scope, if it is still there.
@@ -112,17 +114,45 @@ std::string OpenFile::read_all() const {
   return bytes;
 }
 
-void write_atomically(const std::filesystem::path& path,
-                      const std::function<void(const std::filesystem::path&)>& writer) {
-  const std::filesystem::path folder =
-      path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+Sha256 OpenFile::sha256() const {
+  Sha256Sum sum;
+  std::string part(std::min<std::uint64_t>(size_, 1 << 18), '\0');
+  for (std::uint64_t at = 0; at < size_; at += part.size()) {
+    part.resize(std::min<std::uint64_t>(part.size(), size_ - at));
+    read(at, part.data(), part.size());
+    sum.add(part);
+  }
+  return sum.sum();
+}
+
+std::filesystem::path write_atomically_named(
+    const std::filesystem::path& folder, const std::string& extension,
+    const std::function<void(const std::filesystem::path&)>& writer,
+    const std::function<std::filesystem::path(const OpenFile&)>& name) {
   const std::filesystem::path temporary =
-      folder / (std::string(temporary_prefix) + random_hex(8) + path.extension().string());
+      folder / (std::string(temporary_prefix) + random_hex(8) + extension);
   const Removal removal{temporary};
   writer(temporary);
   sync(temporary, O_RDONLY);
+  const auto written = OpenFile::open(temporary);
+  if (!written) fail(temporary, "read", ENOENT);
+  std::filesystem::path path = name(*written);
   if (::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "name", errno);
   sync(folder, O_RDONLY | O_DIRECTORY);
+  return path;
+}
+
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path&)>& writer) {
+  write_atomically_named(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."),
+                         path.extension().string(), writer, [&](const OpenFile&) { return path; });
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  if (::mkdir(folder.c_str(), 0700) == 0)
+    sync(folder.parent_path(), O_RDONLY | O_DIRECTORY);
+  else if (errno != EEXIST)
+    fail(folder, "create", errno);
 }
 
 void write_atomically(const std::filesystem::path& path, std::string_view bytes) {

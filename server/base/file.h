@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "server/base/sha256.h"
+
 namespace translucube::server {
 
 /// A file of ours could not be written or read: full disk, no permission, broken disk.
@@ -44,11 +46,12 @@ class OpenFile {
       const std::function<void(const std::filesystem::path&)>& writer);
 
   std::uint64_t size() const { return size_; }
-  /// Changes whenever the file is written anew: modification time and size, for an ETag.
+  /// Changes whenever the file is written anew or renamed: size, times of modification and change.
   const std::string& version() const { return version_; }
   /// Fills the buffer from the offset on. Throws FileError if the file has not that many bytes.
   void read(std::uint64_t offset, char* buffer, std::size_t size) const;
   std::string read_all() const;
+  Sha256 sha256() const;  ///< of all bytes, read for it. Throws FileError.
   /// False once it was written, cut, replaced or removed.
   bool is_as_opened() const;
 
@@ -67,6 +70,16 @@ class OpenFile {
 /// Throws FileError; exceptions of `writer` pass through; the temporary file is gone in any case.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& writer);
+
+/// The same for a file whose name depends on its bytes: `name` is told the whole temporary file and
+/// gives the path, in this folder. Returns it.
+std::filesystem::path write_atomically_named(
+    const std::filesystem::path& folder, const std::string& extension,
+    const std::function<void(const std::filesystem::path&)>& writer,
+    const std::function<std::filesystem::path(const OpenFile&)>& name);
+
+/// Makes a folder that only its owner may enter, durably, in one that is there. Throws FileError.
+void make_folder(const std::filesystem::path& folder);
 
 /// Writes bytes that are at hand, likewise.
 void write_atomically(const std::filesystem::path& path, std::string_view bytes);

@@ -1,15 +1,19 @@
 #include "server/base/log.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/sinks/sink.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <charconv>
 #include <chrono>
+#include <memory>
+#include <mutex>
 
 #include "server/base/clock.h"
+#include "server/base/line_writer.h"
 
 namespace translucube::server {
 namespace {
@@ -112,6 +116,41 @@ class Formatter : public spdlog::formatter {
   LogFormat format_;
 };
 
+/// Lines to standard error, by who does not wait for it.
+class StandardError : public spdlog::sinks::sink {
+ public:
+  explicit StandardError(LogFormat format) : formatter_(format), writer_(STDERR_FILENO) {
+    writer_.tell_drops([](std::uint64_t dropped) {
+      const std::string text =
+          std::to_string(dropped) + " lines of the log are lost: nobody read them";
+      spdlog::memory_buf_t line;
+      Formatter(current_format)
+          .format({spdlog::source_loc{}, "translucube", spdlog::level::warn, text}, line);
+      return std::string(line.data(), line.size());
+    });
+  }
+  void log(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    {
+      const std::lock_guard lock(mutex_);
+      formatter_.format(message, line);
+    }
+    writer_.add({line.data(), line.size()});
+  }
+  void flush() override { writer_.flush(); }
+  void set_pattern(const std::string&) override {}
+  void set_formatter(std::unique_ptr<spdlog::formatter>) override {}
+  std::uint64_t dropped() const { return writer_.dropped(); }
+
+ private:
+  std::mutex mutex_;
+  Formatter formatter_;
+  LineWriter writer_;
+};
+
+std::mutex sink_mutex;
+std::weak_ptr<StandardError> current_sink;
+
 }  // namespace
 
 std::string log_text(LogFormat format, const LogFields& fields) {
@@ -122,10 +161,18 @@ std::string log_text(LogFormat format, const LogFields& fields) {
 
 void set_up_log(LogFormat format) {
   current_format = format;
-  auto logger = std::make_shared<spdlog::logger>("translucube",
-                                                 std::make_shared<spdlog::sinks::stderr_sink_mt>());
-  logger->set_formatter(std::make_unique<Formatter>(format));
-  spdlog::set_default_logger(std::move(logger));
+  const auto sink = std::make_shared<StandardError>(format);
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>("translucube", sink));
+  const std::lock_guard lock(sink_mutex);
+  current_sink = sink;
+}
+
+void flush_log() { spdlog::default_logger_raw()->flush(); }
+
+std::uint64_t lost_log_lines() {
+  const std::lock_guard lock(sink_mutex);
+  const auto sink = current_sink.lock();
+  return sink ? sink->dropped() : 0;
 }
 
 void log_event(LogLevel level, const LogFields& fields) {

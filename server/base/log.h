@@ -22,8 +22,12 @@ using LogFields = std::vector<std::pair<std::string_view, LogValue>>;
 std::string log_text(LogFormat format, const LogFields& fields);
 
 /// Logs to standard error from here on: time (UTC), level, then the fields, or for a plain message
-/// the field `message`.
+/// the field `message`. Nobody waits for standard error: what is not read in time is lost, and
+/// counted.
 void set_up_log(LogFormat format);
+/// Waits a moment for what was logged to be written: before the process leaves at once.
+void flush_log();
+std::uint64_t lost_log_lines();
 
 /// One line of these fields, at the level info, or warn where the service is at fault.
 enum class LogLevel { info, warn };

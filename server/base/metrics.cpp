@@ -150,6 +150,25 @@ struct Metrics::Impl {
               static_cast<double>(store.results));
     add_gauge(all, "translucube_result_bytes", "What they take on the disk.",
               static_cast<double>(store.result_bytes));
+    add_gauge(
+        all, "translucube_artifact_bytes",
+        "What all files take on the disk that artifact_bytes bounds: pictures, what is derived "
+        "of them, sheets of sweeps, films of renders under way.",
+        static_cast<double>(store.artifact_bytes));
+    add_gauge(all, "translucube_unknown_folders",
+              "Folders of files that the job store did not know at the start, left as they are.",
+              static_cast<double>(store.unknown_folders));
+    add_gauge(all, "translucube_unknown_bytes", "What they take on the disk.",
+              static_cast<double>(store.unknown_bytes));
+    add_gauge(all, "translucube_damaged_files",
+              "Files whose bytes were found changed since the start; kept aside.",
+              static_cast<double>(store.damaged_files));
+    add_gauge(all, "translucube_renders_set_back",
+              "Renders and images of sweeps that wait for a disk, a file, memory or a thread.",
+              static_cast<double>(store.set_back));
+    add_gauge(all, "translucube_log_lines_lost",
+              "Lines of the log that nobody read in time, since the start.",
+              static_cast<double>(store.lost_log_lines));
     add_gauge(all, "translucube_queue_depth", "Renders that wait for a worker.",
               static_cast<double>(store.queue_depth));
     add_gauge(all, "translucube_queue_oldest_age_seconds",

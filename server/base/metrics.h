@@ -11,12 +11,17 @@ namespace translucube::server {
 
 /// What the store holds at the moment of a scrape.
 struct StoreGauges {
-  std::map<std::string, std::uint64_t> renders;  ///< by state; images of sweeps among them
-  std::map<std::string, std::uint64_t> sweeps;   ///< by state
-  std::map<std::string, std::uint64_t> tasks;    ///< that wait, by priority
-  std::uint64_t queue_depth = 0;                 ///< renders that wait for a worker
-  double oldest_queued_age_s = 0;                ///< 0 where none waits
-  std::uint64_t results = 0, result_bytes = 0;   ///< finished pictures that are kept
+  std::map<std::string, std::uint64_t> renders;          ///< by state; images of sweeps among them
+  std::map<std::string, std::uint64_t> sweeps;           ///< by state
+  std::map<std::string, std::uint64_t> tasks;            ///< that wait, by priority
+  std::uint64_t queue_depth = 0;                         ///< renders that wait for a worker
+  double oldest_queued_age_s = 0;                        ///< 0 where none waits
+  std::uint64_t results = 0, result_bytes = 0;           ///< finished pictures that are kept
+  std::uint64_t artifact_bytes = 0;                      ///< all files: films and sheets too
+  std::uint64_t unknown_folders = 0, unknown_bytes = 0;  ///< that the store does not know
+  std::uint64_t damaged_files = 0;                       ///< found since the start
+  std::uint64_t set_back = 0;                            ///< renders that wait for the world
+  std::uint64_t lost_log_lines = 0;                      ///< since the start
 };
 
 /// What one pass over an image did.

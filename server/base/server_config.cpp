@@ -79,6 +79,9 @@ ServerConfig read_server_config(api::ConfigFile& file) {
     server.interactive_seconds = *seconds;
   if (const auto bytes = object.integer("artifact_bytes", 1 << 20, std::uint64_t{1} << 60))
     server.artifact_bytes = *bytes;
+  integer("keep_days", 1, 36'500, server.keep_days);
+  if (const auto bytes = object.integer("memory_bytes", 0, std::uint64_t{1} << 60))
+    server.memory_bytes = *bytes;
   if (const auto bytes = object.integer("explorable_memory_bytes", 0, std::uint64_t{1} << 60))
     server.explorable_memory_bytes = *bytes;
 

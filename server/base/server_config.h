@@ -42,6 +42,9 @@ struct ServerConfig {
   double interactive_seconds = 10;  ///< a render that is traced for longer waits with the sweeps
   std::uint64_t artifact_bytes = std::uint64_t{20} << 30;  ///< of finished pictures on the disk
 
+  int keep_days = 365;  ///< renders and sweeps that have ended, and their pictures
+
+  std::uint64_t memory_bytes = 0;  ///< of renders; 0: three quarters of what there is
   std::uint64_t explorable_memory_bytes = std::uint64_t{256} << 20;  ///< of films kept in memory
 
   LogFormat log_format = LogFormat::logfmt;

@@ -12,6 +12,9 @@ SignalWatch::SignalWatch(std::function<void(int signal)> on_signal) {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
+  struct sigaction hang_up {};  // a terminal that was closed; nohup(1) ignores it
+  if (sigaction(SIGHUP, nullptr, &hang_up) != 0 || hang_up.sa_handler != SIG_IGN)
+    sigaddset(&set, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   thread_ = std::jthread([set, on_signal = std::move(on_signal)](std::stop_token ended) {
     for (int seen = 0;;) {

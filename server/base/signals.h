@@ -5,9 +5,10 @@
 
 namespace translucube::server {
 
-/// Takes SIGINT and SIGTERM as ordinary calls: `on_signal` runs on a thread of its own, free of the
-/// rules of signal handlers. Make it before any other thread, so that all inherit the mask. A
-/// second signal ends the process at once, for what does not come to its end.
+/// Takes SIGINT, SIGTERM and SIGHUP (unless that is ignored) as ordinary calls: `on_signal` runs on
+/// a thread of its own, free of the rules of signal handlers. Make it before any other thread, so
+/// that all inherit the mask. A second signal ends the process at once, for what does not come to
+/// its end.
 class SignalWatch {
  public:
   explicit SignalWatch(std::function<void(int signal)> on_signal);

@@ -1,8 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <iostream>
 
+#include "picture/image_io.h"
 #include "picture/version.h"
 #include "server/cli/command.h"
 #include "server/cli/verbs.h"
@@ -10,6 +12,7 @@
 int main(int argc, char** argv) {
   using namespace translucube;
   using namespace translucube::server;
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer
   CLI::App app("Renders translucent materials and serves the pictures.", "translucube");
   app.set_version_flag("--version", "translucube " + std::string(project_version()));
   app.require_subcommand(1);
@@ -25,5 +28,7 @@ int main(int argc, char** argv) {
   }
   const auto given =
       std::ranges::find_if(verbs, [](const Verb& verb) { return verb.command->parsed(); });
-  return given->run();
+  const int status = given->run();
+  finish_image_codecs();
+  return status;
 }

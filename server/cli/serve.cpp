@@ -1,7 +1,8 @@
-// Serves until SIGTERM or SIGINT: here the parts of the service are put together.
+// The verb that serves: here the parts of the service are put together.
 
 #include <malloc.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <thread>
 
 #include "picture/image_io.h"
+#include "server/base/crash_mark.h"
 #include "server/base/descriptors.h"
 #include "server/base/log.h"
 #include "server/base/signals.h"
@@ -62,6 +64,7 @@ class Watchdog {
           condition.wait_for(lock, ended, time, [] { return false; });
           if (ended.stop_requested()) return;
           spdlog::warn("not drained in time: ends as it is");
+          flush_log();
           std::_Exit(0);
         }) {}
 
@@ -87,7 +90,7 @@ HttpOptions http_options(const ServerConfig& config, const api::Limits& limits) 
   return http;
 }
 
-StoreGauges gauges_of(const QueueGauges& queue) {
+StoreGauges gauges_of(const QueueGauges& queue, const JobService::Figures& figures) {
   StoreGauges gauges;
   for (const api::JobState state : api::all_job_states) {
     const auto index = static_cast<std::size_t>(state);
@@ -99,6 +102,12 @@ StoreGauges gauges_of(const QueueGauges& queue) {
   gauges.oldest_queued_age_s = queue.oldest_waiting_s;
   gauges.results = queue.results;
   gauges.result_bytes = queue.result_bytes;
+  gauges.artifact_bytes = figures.artifacts.bytes;
+  gauges.unknown_folders = figures.artifacts.unknown;
+  gauges.unknown_bytes = figures.artifacts.unknown_bytes;
+  gauges.damaged_files = figures.artifacts.damaged;
+  gauges.set_back = figures.set_back;
+  gauges.lost_log_lines = lost_log_lines();
   return gauges;
 }
 
@@ -109,6 +118,7 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   // library raises both as soon as it has met one.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   ::mallopt(M_TRIM_THRESHOLD, 1 << 20);
+  ::umask(077);  // the queue and the pictures are their user's alone
   prepare_image_codecs();
   auto [catalog, config] = configured(options);
   set_up_log(config.log_format);
@@ -119,11 +129,13 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   StoreOptions queue;
   queue.most_queued = config.queue_length;
   queue.interactive_seconds = config.interactive_seconds;
+  queue.last_crashed = take_crash_mark(folder.crash_mark());
+  mark_crashes(folder.crash_mark());
   const auto store = open_job_store(folder.store_file(), queue);
   ArtifactStore artifacts(folder.artifacts());
   Metrics metrics;
-  metrics.set_store_gauges([&] { return gauges_of(store->gauges()); });
-  JobService service(catalog, config, colors, *store, artifacts, metrics);
+  JobService service(catalog, config, colors, *store, artifacts, folder, metrics);
+  metrics.set_store_gauges([&] { return gauges_of(store->gauges(), service.figures()); });
   // The first look at the disk takes what it takes; from here on nobody waits for one.
   static_cast<void>(service.unready_reason());
   CallContext context(service, catalog, colors, config);
@@ -146,7 +158,8 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   return 0;
 }
 
-/// One line on standard output says where it serves, once it is ready.
+/// Serves until SIGTERM, SIGINT or SIGHUP. One line on standard output says where, once it is
+/// ready.
 int serve(const ServeOptions& options) {
   std::atomic<int> signal = 0;
   const SignalWatch watch([&](int received) {

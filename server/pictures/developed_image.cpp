@@ -39,10 +39,14 @@ Result<std::optional<api::Redeveloped>> redevelopment_of(const std::string& requ
 
 ImageFile redeveloped_image(Darkroom& darkroom, const StoredResult& result,
                             const api::Redeveloped& redeveloped, const ImageForm& form) {
-  const std::string name = explorable_name(result.image);
+  const std::string name = explorable_name(darkroom.artifacts, result).value_or(std::string());
   const auto film = darkroom.explorables.get(name, [&] {
     // One at a time: each takes much memory.
     const std::lock_guard lock(darkroom.reading);
+    if (name.empty() || !darkroom.artifacts.open_whole(result.content, name)) {
+      darkroom.store.lose_result(result);
+      throw FileError("the film of result " + result.content + " is lost");
+    }
     return read_explorable(darkroom.artifacts.path(result.content, name)).film;
   });
   Image image = develop_explorable(*film, redeveloped.absorption.absorber,

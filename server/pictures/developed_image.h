@@ -17,8 +17,8 @@ api::Result<std::optional<api::Redeveloped>> redevelopment_of(const std::string&
                                                               const ImageQuery& query,
                                                               const api::Catalog& catalog);
 
-/// A finished explorable render through another absorber; `image`: the name of its picture, whose
-/// film lies beside it. Throws ImageError where that cannot be read, ColorError, FileError.
+/// A finished explorable render through another absorber. Throws ImageError where its film cannot
+/// be read, FileError too where that is lost, which the store is told; ColorError.
 ImageFile redeveloped_image(Darkroom& darkroom, const StoredResult& result,
                             const api::Redeveloped& redeveloped, const ImageForm& form);
 

@@ -90,21 +90,37 @@ void write_form(const std::filesystem::path& file, Image image, const ImageForm&
   write_image(file, image, form.format, metadata);
 }
 
-void write_picture(ArtifactStore& artifacts, const std::string& folder, const std::string& name,
-                   const std::function<void(const std::filesystem::path&)>& writer) {
-  artifacts.write(folder, name, [&](const std::filesystem::path& temporary) {
-    try {
-      writer(temporary);
-    } catch (const ImageError& error) {
-      throw FileError(error.what());
-    }
-  });
+std::string write_picture(ArtifactStore& artifacts, const std::string& folder,
+                          const std::string& stem, const std::string& extension,
+                          const std::function<void(const std::filesystem::path&)>& writer) {
+  return artifacts.write_hashed(folder, stem, extension,
+                                [&](const std::filesystem::path& temporary) {
+                                  try {
+                                    writer(temporary);
+                                  } catch (const ImageError& error) {
+                                    throw FileError(error.what());
+                                  }
+                                });
+}
+
+std::string explorable_stem(const std::string& image_stem) { return "explorable-" + image_stem; }
+
+std::optional<std::string> explorable_name(const ArtifactStore& artifacts,
+                                           const StoredResult& result) {
+  const auto hash = hash_in(result.image);
+  if (!hash) return "explorable-" + result.image;  // of an old store
+  return artifacts.hashed_name(
+      result.content, explorable_stem(result.image.substr(0, result.image.find('.'))), ".exr");
+}
+
+bool is_derived(std::string_view name) {
+  return name.starts_with("derived-") || name.starts_with("sheet-");
 }
 
 void remove_files(ArtifactStore& artifacts, const StoredResult& result) {
+  const auto film = explorable_name(artifacts, result);
   for (const std::string& name : artifacts.names(result.content))
-    if (name == result.image || name == explorable_name(result.image) ||
-        name.starts_with("derived-"))
+    if (name == result.image || name == film || is_derived(name) || name.starts_with("damaged-"))
       artifacts.remove(result.content, name);
   artifacts.remove_if_empty(result.content);
 }
@@ -113,75 +129,103 @@ Problem busy_darkroom() {
   return {ProblemCode::overloaded, "Too many pictures are being made.", {}};
 }
 
-std::string explorable_name(const std::string& image) { return "explorable-" + image; }
+std::optional<StoredResult> whole_result(JobStore& store, ArtifactStore& artifacts,
+                                         const std::string& content, Look look) {
+  std::optional<StoredResult> result = store.find_result(content);
+  if (!result) return std::nullopt;
+  const auto file = look == Look::thorough ? artifacts.open_whole(content, result->image)
+                                           : artifacts.open(content, result->image);
+  if (file && (!result->image_bytes || *result->image_bytes == file->size())) return result;
+  spdlog::error("result {}: its picture is not whole", content);
+  store.lose_result(*result);
+  return std::nullopt;
+}
 
 namespace {
 
-/// What a broken disk took can be made again once it is forgotten.
-void forget(Darkroom& darkroom, const StoredResult& result) {
-  if (darkroom.store.remove_result(result)) remove_files(darkroom.artifacts, result);
+Problem gone() {
+  return {ProblemCode::gone,
+          "The picture was removed to make room; the same request makes it again.",
+          {}};
 }
 
-/// The result, if its picture lies there whole.
-std::optional<StoredResult> whole_result(Darkroom& darkroom, const std::string& content) {
-  std::optional<StoredResult> result = darkroom.store.find_result(content);
-  if (!result) return std::nullopt;
-  const auto file = darkroom.artifacts.open(content, result->image);
-  if (file && (!result->image_bytes || *result->image_bytes == file->size())) return result;
-  spdlog::error("result {}: its picture is not whole", content);
-  forget(darkroom, *result);
-  return std::nullopt;
+/// The picture in a form that is kept, made if it is not there; a problem where too many are.
+Result<std::shared_ptr<const OpenFile>> derived_file(Darkroom& darkroom, const StoredResult& result,
+                                                     const ImageForm& form,
+                                                     const std::string& request,
+                                                     std::string& name) {
+  ArtifactStore& artifacts = darkroom.artifacts;
+  const std::string& content = result.content;
+  const std::string extension(row_of(form.format).extension);
+  std::string stem = "derived-" + form_name(form);
+  stem.resize(stem.size() - extension.size());
+  const auto known = [&]() -> std::shared_ptr<const OpenFile> {
+    const auto found = artifacts.hashed_name(content, stem, extension);
+    if (!found) return nullptr;
+    name = *found;
+    return artifacts.open_whole(content, name);
+  };
+  if (auto file = known()) return file;
+  const Places::Place turn = darkroom.making.take();
+  if (!turn) return busy_darkroom();
+  if (auto file = known()) return file;  // another request has made it meanwhile
+  const Image image = read_image(artifacts.path(content, result.image));
+  name = write_picture(artifacts, content, stem, extension,
+                       [&](const std::filesystem::path& temporary) {
+                         write_form(temporary, image, form, darkroom.colors, request);
+                       });
+  darkroom.store.resize_result(content, artifacts.bytes(content));
+  return artifacts.open(content, name);
+}
+
+/// Whether the store has still this picture of this content. One that was made of a picture that
+/// went meanwhile goes too.
+bool is_kept(Darkroom& darkroom, const StoredResult& result) {
+  const auto now = darkroom.store.find_result(result.content);
+  if (now) return now->image == result.image;
+  for (const std::string& name : darkroom.artifacts.names(result.content))
+    if (is_derived(name)) darkroom.artifacts.remove(result.content, name);
+  darkroom.artifacts.remove_if_empty(result.content);
+  return false;
 }
 
 }  // namespace
 
 Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
                                  const std::string& request, const ImageQuery& query) {
-  JobStore& store = darkroom.store;
-  ArtifactStore& artifacts = darkroom.artifacts;
   const auto checked = image_form(query, darkroom.colors.displays());
   if (!checked) return checked.problem();
   const auto& form = *checked;
   const auto redeveloped = redevelopment_of(request, query, darkroom.catalog);
   if (!redeveloped) return redeveloped.problem();
-  const Problem gone{ProblemCode::gone,
-                     "The picture was removed to make room; the same request makes it again.",
-                     {}};
-  const std::optional<StoredResult> result = whole_result(darkroom, content);
-  if (!result) return gone;
-  store.touch_result(content);
-  const std::string& original = result->image;
-  if (*redeveloped) try {
+  const auto result = whole_result(darkroom.store, darkroom.artifacts, content, Look::thorough);
+  if (!result) return gone();
+  darkroom.store.touch_result(content);
+  const bool as_stored = form.format == ImageFormat::exr && form.colorspace == colorspaces[0];
+  std::string name = result->image;
+  std::shared_ptr<const OpenFile> file;
+  try {
+    if (*redeveloped) {
       const Places::Place turn = darkroom.developing.take();
       if (!turn) return busy_darkroom();
       return redeveloped_image(darkroom, *result, **redeveloped, form);
-    } catch (const ImageError& error) {
-      spdlog::error("result {}: {}", content, error.what());
-      forget(darkroom, *result);
-      return gone;
     }
-  const bool as_stored = form.format == ImageFormat::exr && form.colorspace == colorspaces[0];
-  const std::string artifact = as_stored ? original : "derived-" + form_name(form);
-  auto file = artifacts.open(content, artifact);
-  if (!file && !as_stored) {
-    const Places::Place turn = darkroom.making.take();
-    if (!turn) return busy_darkroom();
-    file = artifacts.open(content, artifact);  // another request may have made it meanwhile
-    if (!file) try {
-        Image image = read_image(artifacts.path(content, original));
-        write_picture(artifacts, content, artifact, [&](const std::filesystem::path& temporary) {
-          write_form(temporary, std::move(image), form, darkroom.colors, request);
-        });
-        store.resize_result(content, artifacts.bytes(content));
-        file = artifacts.open(content, artifact);
-      } catch (const ImageError& error) {
-        spdlog::error("result {}: {}", content, error.what());
-        forget(darkroom, *result);
-      }
+    if (as_stored) {
+      file = darkroom.artifacts.open(content, name);
+    } else {
+      const auto derived = derived_file(darkroom, *result, form, request, name);
+      if (!derived) return derived.problem();
+      file = *derived;
+    }
+  } catch (const ImageError& error) {
+    // Its bytes are right: what failed is the reading.
+    if (is_kept(darkroom, *result)) throw FileError(error.what());
+  } catch (const FileError&) {
+    if (is_kept(darkroom, *result)) throw;
   }
-  if (!file) return gone;
-  return ImageFile{file, std::string(mime_type(form.format)),
-                   '"' + content_hash(content + artifact + file->version()) + '"'};
+  if (!is_kept(darkroom, *result) || !file) return gone();
+  const std::string version = hash_in(name).value_or(content + name + file->version());
+  return ImageFile{file, std::string(mime_type(form.format)), '"' + content_hash(version) + '"'};
 }
 
 }  // namespace translucube::server

@@ -52,10 +52,11 @@ api::Result<ImageForm> image_form(const ImageQuery& query, const std::vector<Dis
 void write_form(const std::filesystem::path& file, Image image, const ImageForm& form,
                 const ColorConfig& colors, const std::string& canonical_request);
 
-/// Writes an artifact by an image writer, whose ImageError the disk is to blame for. Throws
-/// FileError.
-void write_picture(ArtifactStore& artifacts, const std::string& folder, const std::string& name,
-                   const std::function<void(const std::filesystem::path&)>& writer);
+/// Writes a hashed artifact by an image writer, whose ImageError the disk is to blame for; its
+/// name. Throws FileError.
+std::string write_picture(ArtifactStore& artifacts, const std::string& folder,
+                          const std::string& stem, const std::string& extension,
+                          const std::function<void(const std::filesystem::path&)>& writer);
 
 struct ImageFile {
   std::shared_ptr<const OpenFile> file;
@@ -63,8 +64,14 @@ struct ImageFile {
   std::string etag;  ///< strong, with its quotes
 };
 
-/// The artifact that holds the path lengths of an explorable render, beside this image.
-std::string explorable_name(const std::string& image);
+/// The artifact that holds the path lengths of an explorable render, beside its image of this stem.
+std::string explorable_stem(const std::string& image_stem);
+/// Its name, where the result has one.
+std::optional<std::string> explorable_name(const ArtifactStore& artifacts,
+                                           const StoredResult& result);
+
+/// True for what is made of a result, or of a sweep, on demand.
+bool is_derived(std::string_view name);
 
 /// Removes the files of a result that the store no longer has. A picture that was made anew
 /// meanwhile has another name and stays. Throws FileError.
@@ -88,10 +95,17 @@ struct Darkroom {
 /// What is answered where there is no turn.
 api::Problem busy_darkroom();
 
+/// The result, if its picture lies there whole; else the store forgets it, so that it is made again
+/// when it is asked for. A thorough look reads its bytes. Throws FileError where that cannot be
+/// told, StoreError.
+enum class Look { quick, thorough };
+std::optional<StoredResult> whole_result(JobStore& store, ArtifactStore& artifacts,
+                                         const std::string& content, Look look);
+
 /// A finished picture in the form asked for: made on the first demand, then kept beside the EXR,
 /// unless it is of another absorber (developed_image.h).
 /// `request`: the picture's, canonical. A problem where it has been removed to make room, or is not
-/// whole: then it is also forgotten. Throws FileError, StoreError.
+/// whole: then the store forgets it. Throws FileError, StoreError.
 api::Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
                                       const std::string& request, const ImageQuery& query);
 

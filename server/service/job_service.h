@@ -27,6 +27,7 @@
 #include "server/service/janitor.h"
 #include "server/service/page.h"
 #include "server/store/artifact_store.h"
+#include "server/store/data_folder.h"
 #include "server/store/job_store.h"
 #include "server/worker/worker_pool.h"
 
@@ -69,11 +70,11 @@ struct SweepPage {
 };
 
 /// Accepts, reports, cancels and removes renders and sweeps, and owns the workers that trace them.
-/// Safe to share by threads. The catalog, config, colours, stores and metrics outlive it.
+/// Safe to share by threads. The catalog, config, colours, stores, folder and metrics outlive it.
 class JobService {
  public:
   JobService(const api::Catalog& catalog, const ServerConfig& config, const ColorConfig& colors,
-             JobStore& store, ArtifactStore& artifacts, Metrics& metrics,
+             JobStore& store, ArtifactStore& artifacts, const DataFolder& folder, Metrics& metrics,
              Engine engine = renderer_engine());
   ~JobService();
 
@@ -126,18 +127,31 @@ class JobService {
   /// Empty if the service can take work, else the reason why not.
   std::optional<std::string> unready_reason();
 
+  /// For /metrics.
+  struct Figures {
+    ArtifactStore::Figures artifacts;
+    std::uint64_t set_back = 0;  ///< jobs that wait for the world
+  };
+  Figures figures() const { return {darkroom_.artifacts.figures(), setbacks_.count()}; }
+
   /// Refuses new work and ends all waiting. Passes under way may take `drain` to end, so that they
   /// are kept; then stops the workers at their next tile and gives their tasks back to the store.
   void shut_down(std::chrono::milliseconds drain = {});
 
  private:
   std::optional<api::Problem> refusal() const;
+  std::optional<api::Problem> no_room(std::uint64_t picture_bytes);
+  std::optional<api::Problem> too_large(const api::RenderRequest& request, std::uint64_t lanes,
+                                        const char* pointer) const;
+  Intake intake(int others) const;
+  void keep_house(std::stop_token ended);
   void stop_work(const std::string& job_id);
   void discard(const std::vector<StoredResult>& unused);
 
   const api::Catalog& catalog_;
   const ServerConfig& config_;
   JobStore& store_;
+  const DataFolder& folder_;
   Metrics& metrics_;
   Changes changes_;
   Janitor janitor_;
@@ -151,7 +165,11 @@ class JobService {
   Recent<std::pair<std::string, ImageQuery>, ImageFile> pictures_;
   Recent<std::pair<std::string, std::string>, ToldText> told_sweeps_{8};  // by id and version
   std::mutex telling_;
+  Setbacks setbacks_;
+  MemoryBudget memory_;
+  std::atomic<std::uint64_t> room_ = 0;  ///< on the disk, for a job that is worked on
   std::unique_ptr<WorkerPool> workers_;
+  std::jthread house_keeper_;
 };
 
 }  // namespace translucube::server

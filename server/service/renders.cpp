@@ -40,8 +40,11 @@ Result<Submission> JobService::submit(std::string_view document,
   if (const auto problem = refusal()) return *problem;
   const auto request = api::parse_render_request(document, catalog_);
   if (!request) return request.problem();
+  if (const auto problem = too_large(*request, 1, "/image")) return *problem;
   const NewJob job = new_job(*request, catalog_, idempotency_key);
   return guarded([&]() -> Result<Submission> {
+    if (const auto problem = no_room(job.picture_bytes)) return *problem;
+    whole_result(store_, darkroom_.artifacts, job.content, Look::quick);
     const auto outcome = store_.submit(job);
     if (!outcome) return outcome.problem();
     const auto& submitted = *outcome;

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "api/base/text.h"
 #include "api/request/canonical.h"
 #include "api/request/sweep.h"
@@ -41,7 +43,14 @@ Result<SweepSubmission> JobService::submit_sweep(
   const auto request = api::parse_sweep_request(document, catalog_);
   if (!request) return request.problem();
   const NewSweep sweep = new_sweep(*request, catalog_, idempotency_key);
+  const std::size_t most_lanes =
+      std::ranges::max(sweep.images, {}, &std::vector<Picture>::size).size();
+  if (const auto problem = too_large(request->base, most_lanes, "/base/image")) return *problem;
   return guarded([&]() -> Result<SweepSubmission> {
+    if (const auto problem = no_room(request->point_count() * sweep.picture_bytes)) return *problem;
+    for (const std::vector<Picture>& lanes : sweep.images)
+      for (const Picture& lane : lanes)
+        whole_result(store_, darkroom_.artifacts, lane.content, Look::quick);
     const auto outcome = store_.submit(sweep);
     if (!outcome) return outcome.problem();
     const auto& submitted = *outcome;

@@ -1,27 +1,26 @@
 #include "server/store/artifact_store.h"
 
-#include <map>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
 
-#include "api/base/text.h"
-#include "renderer/film/film_bytes.h"
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "server/base/ids.h"
 
 namespace translucube::server {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string pass_name(std::uint32_t index) { return "pass-" + std::to_string(index) + ".film"; }
-std::string film_name(std::uint32_t passes) { return "film-" + std::to_string(passes) + ".bin"; }
-
-/// The number in "<prefix><number><suffix>".
-std::optional<std::uint32_t> number_in(std::string_view name, std::string_view prefix,
-                                       std::string_view suffix) {
-  if (!name.starts_with(prefix) || !name.ends_with(suffix)) return std::nullopt;
-  if (name.size() <= prefix.size() + suffix.size()) return std::nullopt;
-  name.remove_prefix(prefix.size());
-  name.remove_suffix(suffix.size());
-  return api::number_of<std::uint32_t>(name);
-}
+// A file whose bytes were found right is not read again for a while, unless it was changed.
+constexpr std::chrono::seconds checked_for(10);
+constexpr std::size_t most_checked = 4096;
+// Of SHA-256's: 128 bits, so that names stay short.
+constexpr std::size_t hash_digits = 32;
+constexpr std::string_view damaged_prefix = "damaged-";
 
 std::vector<fs::path> entries(const fs::path& folder) {
   std::vector<fs::path> paths;
@@ -33,39 +32,106 @@ std::vector<fs::path> entries(const fs::path& folder) {
   return paths;
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw FileError("cannot create " + folder.string() + ": " + error.message());
-}
+std::string hash_of(const OpenFile& file) { return hex(file.sha256()).substr(0, hash_digits); }
 
 }  // namespace
 
-ArtifactStore::ArtifactStore(fs::path root) : root_(std::move(root)) {
+std::optional<std::string> hash_in(std::string_view name) {
+  const std::size_t end = name.rfind('.');
+  if (end == name.npos || end < hash_digits + 1 || name[end - hash_digits - 1] != '.') return {};
+  const std::string_view hash = name.substr(end - hash_digits, hash_digits);
+  if (hash.find_first_not_of("0123456789abcdef") != hash.npos) return {};
+  return std::string(hash);
+}
+
+ArtifactStore::ArtifactStore(fs::path root)
+    : root_(std::move(root)), checked_(most_checked, checked_for) {
   make_folder(root_);
-  for (const std::string& id : ids())
+  for (const std::string& id : ids()) {
     for (const fs::path& file : entries(root_ / id))
       if (is_temporary_name(file.filename().string())) remove(id, file.filename().string());
+    count(id);
+  }
 }
 
 fs::path ArtifactStore::path(const std::string& id, const std::string& name) const {
   return root_ / id / name;
 }
 
+/// Runs `write` with the folder there. Another thread may remove it just then, as empty.
+void ArtifactStore::in_folder(const std::string& id, const std::function<void()>& write) {
+  constexpr int most_tries = 3;
+  for (int tries = 1;; ++tries) try {
+      make_folder(root_ / id);
+      write();
+      break;
+    } catch (const FileError&) {
+      std::error_code error;
+      if (tries == most_tries || fs::exists(root_ / id, error) || !fs::exists(root_, error)) throw;
+    }
+  count(id);
+}
+
 void ArtifactStore::write(const std::string& id, const std::string& name, std::string_view bytes) {
-  make_folder(root_ / id);
-  write_atomically(path(id, name), bytes);
+  in_folder(id, [&] { write_atomically(path(id, name), bytes); });
 }
 
 void ArtifactStore::write(const std::string& id, const std::string& name,
                           const std::function<void(const fs::path&)>& writer) {
-  make_folder(root_ / id);
-  write_atomically(path(id, name), writer);
+  in_folder(id, [&] { write_atomically(path(id, name), writer); });
+}
+
+std::string ArtifactStore::write_hashed(const std::string& id, const std::string& stem,
+                                        const std::string& extension,
+                                        const std::function<void(const fs::path&)>& writer) {
+  fs::path written;
+  in_folder(id, [&] {
+    written = write_atomically_named(root_ / id, extension, writer, [&](const OpenFile& file) {
+      return path(id, stem + '.' + hash_of(file) + extension);
+    });
+  });
+  return written.filename().string();
 }
 
 std::shared_ptr<const OpenFile> ArtifactStore::open(const std::string& id,
                                                     const std::string& name) const {
-  return OpenFile::open(path(id, name));
+  auto file = OpenFile::open(path(id, name));
+  // What is asked of a disk that is not there is not lost.
+  if (std::error_code error; !file && !fs::is_directory(root_, error))
+    throw FileError("cannot open " + root_.string() + ": it is not there");
+  return file;
+}
+
+std::shared_ptr<const OpenFile> ArtifactStore::open_whole(const std::string& id,
+                                                          const std::string& name) {
+  auto file = open(id, name);
+  const auto hash = file ? hash_in(name) : std::nullopt;
+  if (!hash) return file;
+  const std::string key = id + '/' + name;
+  if (checked_.find(key) == file->version()) return file;
+  const auto now = checked_.now();
+  if (hash_of(*file) == *hash) {
+    checked_.keep(key, file->version(), now);
+    return file;
+  }
+  ++damaged_;
+  spdlog::error("{}: its bytes are not those that were written; kept as {}{}", key, damaged_prefix,
+                name);
+  if (::rename(path(id, name).c_str(), path(id, std::string(damaged_prefix) + name).c_str()) != 0 &&
+      errno != ENOENT)
+    throw FileError("cannot put aside " + path(id, name).string());
+  return nullptr;
+}
+
+std::optional<std::string> ArtifactStore::hashed_name(const std::string& id,
+                                                      const std::string& stem,
+                                                      std::string_view extension) const {
+  const std::size_t size = stem.size() + 1 + hash_digits + extension.size();
+  for (std::string& name : names(id))
+    if (name.size() == size && name.starts_with(stem + '.') && name.ends_with(extension) &&
+        hash_in(name))
+      return std::move(name);
+  return std::nullopt;
 }
 
 std::vector<std::string> ArtifactStore::names(const std::string& id) const {
@@ -78,6 +144,7 @@ void ArtifactStore::remove(const std::string& id, const std::string& name) {
   std::error_code error;
   fs::remove(path(id, name), error);
   if (error) throw FileError("cannot remove " + path(id, name).string() + ": " + error.message());
+  count(id);
 }
 
 void ArtifactStore::remove_all(const std::string& id) {
@@ -86,6 +153,7 @@ void ArtifactStore::remove_all(const std::string& id) {
   // Another thread may be removing the same files.
   if (error && error != std::errc::no_such_file_or_directory)
     throw FileError("cannot remove " + (root_ / id).string() + ": " + error.message());
+  count(id);
 }
 
 void ArtifactStore::remove_if_empty(const std::string& id) {
@@ -110,83 +178,42 @@ std::uint64_t ArtifactStore::bytes(const std::string& id) const {
   return sum;
 }
 
+void ArtifactStore::count(const std::string& id) {
+  const std::lock_guard lock(counting_);
+  const std::uint64_t now = bytes(id);
+  std::uint64_t& before = counted_[id];
+  bytes_ += now - before;
+  before = now;
+  if (now == 0) counted_.erase(id);
+}
+
+void ArtifactStore::leave_alone(const std::string& id) {
+  const std::lock_guard lock(counting_);
+  const auto counted = counted_.find(id);
+  if (counted == counted_.end()) return;
+  bytes_ -= counted->second;
+  unknown_bytes_ += counted->second;
+  ++unknown_;
+  counted_.erase(counted);
+}
+
+ArtifactStore::Figures ArtifactStore::figures() const {
+  const std::lock_guard lock(counting_);
+  return {bytes_, unknown_, unknown_bytes_, damaged_};
+}
+
+std::uint64_t ArtifactStore::free_bytes() const {
+  struct statvfs system {};
+  if (::statvfs(root_.c_str(), &system) != 0)
+    throw FileError("cannot look at " + root_.string() + ": " + std::strerror(errno));
+  return std::uint64_t{system.f_bavail} * system.f_frsize;
+}
+
 void ArtifactStore::check_writable() {
   const fs::path probe = root_ / "probe";
   write_atomically(probe, "writable");
   std::error_code ignored;
   fs::remove(probe, ignored);
-}
-
-void ArtifactStore::write_pass(const std::string& id, const PassFilm& film) {
-  write(id, pass_name(film.pass.index), to_bytes(film));
-}
-
-void ArtifactStore::write_film(const std::string& id, const Film& film) {
-  write(id, film_name(film.passes), to_bytes(film));
-}
-
-std::optional<PassFilm> ArtifactStore::read_pass(const std::string& id, const Pass& pass) const {
-  const auto file = open(id, pass_name(pass.index));
-  if (!file) return std::nullopt;
-  try {
-    PassFilm film = pass_film_from_bytes(file->read_all());
-    if (film.pass == pass) return film;
-  } catch (const FileError&) {
-    throw;
-  } catch (const std::runtime_error&) {
-    // Not whole: as good as not there.
-  }
-  return std::nullopt;
-}
-
-Film ArtifactStore::read_film(const std::string& id, std::uint32_t pass_count) const {
-  std::map<std::uint32_t, std::string> checkpoints, partial_films;
-  for (const std::string& name : names(id)) {
-    const auto passes = number_in(name, "film-", ".bin");
-    if (passes && *passes <= pass_count) checkpoints.emplace(*passes, name);
-    const auto index = number_in(name, "pass-", ".film");
-    if (index && *index < pass_count) partial_films.emplace(*index, name);
-  }
-
-  Film film;
-  for (auto it = checkpoints.rbegin(); it != checkpoints.rend() && film.passes == 0; ++it) {
-    try {
-      if (const auto file = open(id, it->second)) film = film_from_bytes(file->read_all());
-    } catch (const FileError&) {
-      throw;
-    } catch (const std::runtime_error&) {
-      film = {};  // not whole: an older one may be
-    }
-  }
-  try {
-    while (film.passes < pass_count) {
-      const auto next = partial_films.find(film.passes);
-      if (next == partial_films.end()) break;
-      const auto file = open(id, next->second);
-      if (!file) break;
-      const PassFilm pass = pass_film_from_bytes(file->read_all());
-      if (pass.pass.index != film.passes) break;
-      merge(film, pass);
-    }
-  } catch (const FileError&) {
-    throw;
-  } catch (const std::runtime_error&) {
-    // The passes from here on are traced again.
-  }
-  return film;
-}
-
-void ArtifactStore::remove_films_before(const std::string& id, std::uint32_t pass_count) {
-  for (const std::string& name : names(id)) {
-    const auto passes = number_in(name, "film-", ".bin");
-    const auto index = number_in(name, "pass-", ".film");
-    if ((passes && *passes < pass_count) || (index && *index < pass_count)) remove(id, name);
-  }
-}
-
-void ArtifactStore::remove_films(const std::string& id) {
-  for (const std::string& name : names(id))
-    if (number_in(name, "film-", ".bin") || number_in(name, "pass-", ".film")) remove(id, name);
 }
 
 }  // namespace translucube::server

@@ -59,6 +59,13 @@ struct StoredResult {
   std::string stats;                           ///< of the render that made it, JSON text
 };
 
+/// Files of what the store has no longer.
+struct Leftover {
+  std::string folder;  ///< of a job, of a sweep, or of a result
+  std::string image;   ///< of a result; "": all that is in the folder
+  friend bool operator==(const Leftover&, const Leftover&) = default;
+};
+
 struct StoredSweep {
   std::string id;
   api::JobState state = api::JobState::queued;
@@ -89,6 +96,7 @@ struct NewJob {
   std::optional<std::uint32_t> total_samples;
   Pass first_pass;
   std::string content;
+  std::uint64_t picture_bytes = 0;  ///< that its picture will take on the disk, at most
 };
 
 struct NewSweep {
@@ -97,6 +105,7 @@ struct NewSweep {
   std::optional<std::uint32_t> total_samples;  ///< of each image
   Pass first_pass;
   std::vector<std::vector<Picture>> images;  ///< the lanes of each
+  std::uint64_t picture_bytes = 0;           ///< of each lane
 };
 
 /// `Stored`: Job or StoredSweep.
@@ -104,6 +113,12 @@ template <typename Stored>
 struct Submitted {
   Stored stored;
   bool created = false;  ///< false: the key was used for the same request before
+};
+
+/// What the jobs that have not ended will take on the disk for their pictures.
+struct OpenNeeds {
+  std::uint64_t bytes = 0;
+  std::uint64_t largest = 0;  ///< of one job
 };
 
 /// Who is served first: renders that somebody waits for, or what takes long.
@@ -138,6 +153,9 @@ struct Event {
   std::uint64_t number = 0;
   std::string type, data;  ///< JSON text
 };
+
+/// Which tasks may be handed out: all, those of jobs that were begun before, or none.
+enum class Intake { all, begun, none };
 
 /// A look at the queue, for /metrics. Indexed by JobState and by Priority.
 struct QueueGauges {

@@ -49,10 +49,14 @@ class JobStore {
   /// which are told for their files. Empty if there is none of this id.
   virtual std::optional<std::vector<StoredResult>> remove(const std::string& id) = 0;
 
+  /// Some of the renders and sweeps that ended before this time, the oldest first.
+  virtual std::vector<std::string> ended_before(std::int64_t time_ms, int most) const = 0;
+
   // Tasks.
   /// The oldest task of this priority that nobody holds, of the job `preferred` if that has one.
   /// Its job is running then.
-  virtual std::optional<Task> claim(Priority priority, const std::string& preferred = {}) = 0;
+  virtual std::optional<Task> claim(Priority priority, const std::string& preferred = {},
+                                    Intake intake = Intake::all) = 0;
   // The functions below do nothing and return false if the claim is no longer the task's last one.
   virtual bool renew(const Task& task) = 0;
   virtual bool release(const Task& task, std::int64_t delay_ms = 0,
@@ -67,15 +71,29 @@ class JobStore {
   virtual bool fail(const Task& task, const std::string& error) = 0;
   virtual std::int64_t lease_ms() const = 0;
 
+  // The end of the process. A store that is opened again frees the tasks that were held when its
+  // last process died. Their jobs are suspects: each is worked on alone, before all others, until a
+  // pass of it is complete. One that was alone at two deaths, with no complete pass between, has
+  // failed; at four, where the process was killed from outside before the task was renewed once.
+  /// This process ends as it was told to: what it holds when it does is not suspect.
+  virtual void announce_end() = 0;
+
   // Results.
   virtual std::optional<StoredResult> find_result(const std::string& content) const = 0;
   virtual void touch_result(const std::string& content) = 0;  ///< it was used now
   virtual void resize_result(const std::string& content, std::uint64_t bytes) = 0;
-  /// False if it is not there, or another one of this content is.
+  /// Its files are to be removed. False if it is not there, or another one of this content is.
   virtual bool remove_result(const StoredResult& result) = 0;
+  /// Forgets it: its picture is not there, or not whole. What there is stays.
+  virtual void lose_result(const StoredResult& result) = 0;
   /// The results that were not used for longest and make up `bytes` or more, by their last use.
   virtual std::vector<StoredResult> least_recently_used(std::uint64_t bytes) const = 0;
   virtual std::uint64_t result_bytes() const = 0;
+
+  // Files. What was removed above is left over until its files are gone. Only what stands here may
+  // be removed: a store that was lost in part, or put back from a copy, knows less than the disk.
+  virtual std::vector<Leftover> leftovers() const = 0;
+  virtual void forget(const Leftover& removed) = 0;
 
   // Watching.
   /// Those of a render or a sweep after `number`, in their order; nothing for what is not there.
@@ -84,7 +102,11 @@ class JobStore {
   /// The number of the last event of a render or a sweep, 0 where there is none.
   virtual std::uint64_t last_event(const std::string& subject) const = 0;
   virtual QueueGauges gauges() const = 0;
+  virtual OpenNeeds open_needs() const = 0;
   virtual void check_writable() = 0;
+  /// Brings what was written since the last time to where the loss of a journal does not touch it.
+  /// Others go on reading and writing meanwhile.
+  virtual void checkpoint() = 0;
 };
 
 struct StoreOptions {
@@ -93,6 +115,7 @@ struct StoreOptions {
   Clock lease_clock = monotonic_clock_ms;  ///< leases and delays: it never jumps
   std::uint64_t most_queued = 20'000;      ///< jobs that have not ended
   double interactive_seconds = 10;         ///< a render that has been traced longer is batch work
+  bool last_crashed = false;  ///< the last process ended by a fault of its own (crash_mark.h)
 };
 
 /// Opens or creates the store at a location: the file of an SQLite database, or ":memory:" for one

@@ -34,15 +34,11 @@ void end(Workshop& workshop, const Hand& hand, const Task& task, double seconds,
   const Completion completion{pass_seconds, progress_of(hand.film(), hand.job.quality(), seconds)};
   const bool ended = workshop.store.finish(task, completion, stats, results);
   discard_refused(workshop, results);
-  if (!ended) {
-    tidy(workshop, task.job_id);
-    return;
-  }
+  if (!ended) return;
   workshop.metrics.count_render(seconds);
   workshop.metrics.count_traced_image();
   for (std::size_t lane = 0; lane < results.size(); ++lane)
     workshop.metrics.count_developed_image();
-  workshop.artifacts.remove_all(task.job_id);
 }
 
 }  // namespace
@@ -62,10 +58,7 @@ bool accept(Workshop& workshop, Hand& hand, const Task& task, TracedPass pass) {
   // a short pass.
   if (!hand.film().shares) keep(workshop, hand, pass);
   const Completion completion{pass.seconds, progress_of(hand.film(), hand.job.quality(), seconds)};
-  if (!workshop.store.complete(task, completion, *next)) {
-    tidy(workshop, task.job_id);
-    return false;
-  }
+  if (!workshop.store.complete(task, completion, *next)) return false;
   hand.seconds = seconds;
   keep_checkpoint(workshop, hand);
   return true;

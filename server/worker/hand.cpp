@@ -67,9 +67,10 @@ void put_down(Workshop& workshop, Hand& hand) {
     const bool unsaved = hand.film().shares && hand.unsaved_from < hand.film().passes;
     const std::optional<Job> job = unsaved ? workshop.store.find(hand.id) : std::nullopt;
     if (job && !api::is_end(job->state)) workshop.artifacts.write_film(hand.id, hand.film());
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
     spdlog::warn("render {}: {}", hand.id, error.what());  // it is traced again
   }
+  if (!hand.id.empty()) tidy(workshop, hand.id);  // it may have ended while that was written
   hand = {};
 }
 

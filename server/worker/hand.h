@@ -12,7 +12,8 @@ namespace translucube::server {
 /// What a worker has in hand: the scene and the film of its last job, so that the next task of the
 /// same job starts at once.
 struct Hand {
-  std::string id;  ///< the job's; empty where there is none
+  std::string id;              ///< the job's; empty where there is none
+  MemoryBudget::Share memory;  ///< first: given back when all else is freed
   TracedJob job;
   TracedScene scene;
   std::shared_ptr<LiveFilm> live = std::make_shared<LiveFilm>();

@@ -15,15 +15,16 @@ std::uint64_t bytes_of(const Workshop& workshop, const std::string& content,
 
 /// What a lane of the film shows. Where the film keeps the path lengths, it is written as well and
 /// its bytes are added to the result's.
-Image developed(Workshop& workshop, const Hand& hand, std::size_t lane, StoredResult& result) {
+Image developed(Workshop& workshop, const Hand& hand, std::size_t lane, const std::string& stem,
+                StoredResult& result) {
   if (!hand.film().shares) return develop(hand.film(), static_cast<int>(lane));
   const ExplorableBasis& basis = hand.scene.explorable.value();
   const auto film = std::make_shared<const ExplorableFilm>(
       explorable_film(basis.bins, basis.unit_mm, hand.film()));
-  const std::string name = explorable_name(result.image);
-  write_picture(workshop.artifacts, result.content, name, [&](const std::filesystem::path& file) {
-    write_explorable(file, *film, hand.job.canonical[lane]);
-  });
+  const std::string name = write_picture(workshop.artifacts, result.content, explorable_stem(stem),
+                                         ".exr", [&](const std::filesystem::path& file) {
+                                           write_explorable(file, *film, hand.job.canonical[lane]);
+                                         });
   result.bytes += bytes_of(workshop, result.content, name);
   workshop.explorables.keep(name, film);
   return develop_explorable(*film, basis.own, workshop.threads);
@@ -33,17 +34,18 @@ Image developed(Workshop& workshop, const Hand& hand, std::size_t lane, StoredRe
 
 std::vector<StoredResult> write_results(Workshop& workshop, const Hand& hand, const Task& task,
                                         const std::string& stats) {
-  // The name belongs to this claim: a late double of it cannot touch a picture that is served.
-  const std::string name = "image-" + task.job_id + '-' + std::to_string(task.pass.index) + '-' +
-                           std::to_string(task.fencing_token) + ".exr";
+  // A late double of this claim writes the same bytes under the same name, or others under another:
+  // it cannot touch a picture that is served.
+  const std::string stem = "image-" + task.job_id;
   std::vector<StoredResult> results;
   for (std::size_t lane = 0; lane < hand.job.requests.size(); ++lane) {
-    StoredResult result{hand.job.contents[lane], name, {}, 0, stats};
-    const Image picture = developed(workshop, hand, lane, result);
-    write_picture(workshop.artifacts, result.content, name, [&](const std::filesystem::path& file) {
-      write_image(file, picture, ImageFormat::exr, {hand.job.canonical[lane], "lin_rec709"});
-    });
-    result.image_bytes = bytes_of(workshop, result.content, name);
+    StoredResult result{hand.job.contents[lane], {}, {}, 0, stats};
+    const Image picture = developed(workshop, hand, lane, stem, result);
+    result.image = write_picture(
+        workshop.artifacts, result.content, stem, ".exr", [&](const std::filesystem::path& file) {
+          write_image(file, picture, ImageFormat::exr, {hand.job.canonical[lane], "lin_rec709"});
+        });
+    result.image_bytes = bytes_of(workshop, result.content, result.image);
     result.bytes += *result.image_bytes;
     results.push_back(std::move(result));
   }
@@ -54,8 +56,9 @@ void discard_refused(Workshop& workshop, const std::vector<StoredResult>& result
   for (const StoredResult& ours : results) {
     const std::optional<StoredResult> kept = workshop.store.find_result(ours.content);
     if (kept && kept->image == ours.image) continue;
+    if (const auto film = explorable_name(workshop.artifacts, ours))
+      workshop.artifacts.remove(ours.content, *film);
     workshop.artifacts.remove(ours.content, ours.image);
-    workshop.artifacts.remove(ours.content, explorable_name(ours.image));
   }
 }
 

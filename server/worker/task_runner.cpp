@@ -3,12 +3,16 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <new>
+#include <system_error>
 
 #include "api/request/scene_spec.h"
 #include "api/request/sweep.h"
+#include "server/store/needs.h"
 #include "server/worker/accept.h"
 #include "server/worker/render_failure.h"
+#include "server/worker/resources.h"
 #include "server/worker/task_watch.h"
 
 namespace translucube::server {
@@ -16,10 +20,19 @@ namespace {
 
 using api::ProblemCode;
 
-// A render that ends the process this often (crash, out of memory) is given up.
-constexpr int max_attempts = 20;
-// A disk that refuses is tried again for about two minutes.
-constexpr int max_storage_attempts = 8;
+// What is refused so often in a row, though its file can be read, or though a share of the memory
+// was free for it, is refused for good.
+constexpr int most_refusals = 3, most_without_memory = 5;
+constexpr std::int64_t shortest_wait_ms = 500, longest_wait_ms = 30'000;
+
+constexpr std::int64_t wait_for_memory_ms = 300;
+
+constexpr const char* disk_refuses = "The disk of the service is full or cannot be used.";
+
+std::chrono::milliseconds wait_after(int attempts) {
+  return std::chrono::milliseconds(
+      std::min(longest_wait_ms, shortest_wait_ms << std::clamp(attempts, 0, 8)));
+}
 
 const char* pointer_of(SceneError::Part part) {
   switch (part) {
@@ -37,32 +50,68 @@ const char* pointer_of(SceneError::Part part) {
 
 void TaskRunner::run(const Task& task, std::stop_source work) {
   try {
-    run_or_throw(task, std::move(work));
-    return;
+    try {
+      run_or_throw(task, std::move(work));
+      workshop_.setbacks.clear(task.job_id);
+    } catch (...) {
+      settle(task);
+    }
+  } catch (const std::exception& error) {
+    // The lease runs out and the task comes again.
+    spdlog::error("render {}: {}", task.job_id, error.what());
+    hand_ = {};
+  }
+  tidy(workshop_, task.job_id);
+}
+
+/// What becomes of a task by the exception at hand.
+void TaskRunner::settle(const Task& task) {
+  const std::vector<api::RenderRequest> requests = std::move(hand_.job.requests);
+  hand_ = {};
+  try {
+    throw;
   } catch (const RenderFailure& failure) {
     fail(task, failure.problem);
+  } catch (const Setback& setback) {
+    wait(task, setback);
   } catch (const StoreError& error) {
-    retry_later(task, error.what());
+    wait(task, {Setback::Of::disk, disk_refuses, error.what()});
   } catch (const FileError& error) {
-    retry_later(task, error.what());
+    wait(task, {Setback::Of::disk, disk_refuses, error.what()});
   } catch (const SceneError& error) {
-    fail(task, {ProblemCode::invalid_request,
-                "The scene cannot be built.",
-                {{pointer_of(error.part), error.what()}}});
-  } catch (const std::bad_alloc&) {
-    fail(task,
-         {ProblemCode::internal, "There is not enough memory for a render of this size.", {}});
+    if (requests.empty()) throw;
+    refuse(task, requests.front(), error);
+  } catch (const std::bad_alloc& error) {
+    if (!wait(task, {Setback::Of::service, "There is too little memory.", error.what()},
+              most_without_memory))
+      fail(task,
+           {ProblemCode::internal, "There is not enough memory for a render of this size.", {}});
+  } catch (const std::system_error& error) {
+    wait(task, {Setback::Of::service, "The machine has no more threads, or files.", error.what()});
   } catch (const std::exception& error) {
     spdlog::error("render {}: {}", task.job_id, error.what());
     fail(task, {ProblemCode::internal, "The renderer failed on this request.", {}});
   }
-  hand_ = {};
+}
+
+/// A scene that cannot be built. What its files lack is found when it is submitted: a file that
+/// cannot be read now was there then, and will be again.
+void TaskRunner::refuse(const Task& task, const api::RenderRequest& request,
+                        const SceneError& error) {
+  const auto resource = resource_of(request, workshop_.catalog, error.part);
+  if (resource) {
+    const bool readable = resource->of == Setback::Of::request && can_be_read(resource->file);
+    if (wait(task, {resource->of, "A file that a render needs cannot be read.", error.what()},
+             readable ? most_refusals : any_number))
+      return;
+  }
+  const std::string detail = resource ? without_path(error.what(), resource->file) : error.what();
+  fail(task, {ProblemCode::invalid_request,
+              "The scene cannot be built.",
+              {{pointer_of(error.part), detail}}});
 }
 
 void TaskRunner::run_or_throw(const Task& task, std::stop_source work) {
-  if (task.attempts > max_attempts)
-    throw RenderFailure(
-        {ProblemCode::internal, "The service ended too often while it worked on this render.", {}});
   const std::optional<Job> job = workshop_.store.find(task.job_id);
   if (!job || job->state != api::JobState::running) {
     give_back(task);  // canceled or removed between the claim and here
@@ -90,11 +139,19 @@ bool TaskRunner::take_in_hand(const Task& task, const Job& job, std::stop_token 
     // Another job may have made the same pictures since this one was accepted.
     if (workshop_.store.finish_from_results(task)) {
       workshop_.metrics.count_cache_hit();
-      workshop_.artifacts.remove_all(task.job_id);
       return false;
     }
     auto traced = traced_job(job, workshop_.store, workshop_.catalog);
+    if (!traced && is_of_resources(traced.problem()))
+      throw Setback(Setback::Of::request, "A file that a render names is away.",
+                    to_text(traced.problem()));
     if (!traced) throw RenderFailure(traced.problem());
+    hand_.memory = workshop_.memory.take(
+        task.job_id, memory_of(traced->requests.front(), traced->requests.size()));
+    if (!hand_.memory) {
+      workshop_.store.release(task, wait_for_memory_ms);
+      return false;
+    }
     hand_.job = *std::move(traced);
     hand_.scene = workshop_.engine(api::scene_spec(hand_.job.requests, workshop_.catalog));
     hand_.id = task.job_id;
@@ -118,40 +175,31 @@ std::variant<TracedPass, OutOfTime, Stopped> TaskRunner::trace_or_read(const Tas
     const TraceCounters& counters = pass->film.counters;
     workshop_.metrics.count_pass(
         {pass->seconds, counters.camera_samples,
-         counters.flights + counters.boundary_events + counters.light_samples, counters.nan_samples});
+         counters.flights + counters.boundary_events + counters.light_samples,
+         counters.nan_samples});
   }
   return outcome;
 }
 
-void TaskRunner::give_back(const Task& task) {
-  if (!workshop_.store.release(task)) tidy(workshop_, task.job_id);
-}
+void TaskRunner::give_back(const Task& task) { workshop_.store.release(task); }
 
 void TaskRunner::fail(const Task& task, const api::Problem& problem) {
   spdlog::error("render {} failed: {}", task.job_id, problem.detail);
-  hand_ = {};
-  try {
-    workshop_.store.fail(task, api::to_json(problem));
-    tidy(workshop_, task.job_id);
-  } catch (const std::exception& error) {
-    // The lease runs out and the task comes again.
-    spdlog::error("render {}: {}", task.job_id, error.what());
-  }
+  workshop_.setbacks.clear(task.job_id);
+  workshop_.store.fail(task, api::to_json(problem));
 }
 
-void TaskRunner::retry_later(const Task& task, const std::string& reason) {
-  if (task.attempts >= max_storage_attempts) {
-    spdlog::error("render {}: {}", task.job_id, reason);
-    fail(task, {ProblemCode::storage_failure, "The service could not store the render.", {}});
-    return;
-  }
-  const std::int64_t delay_ms = std::min<std::int64_t>(30'000, 500LL << task.attempts);
-  spdlog::warn("render {}: {}; again in {} ms", task.job_id, reason, delay_ms);
-  try {
-    if (!workshop_.store.release(task, delay_ms, true)) tidy(workshop_, task.job_id);
-  } catch (const StoreError& error) {
-    spdlog::error("render {}: {}", task.job_id, error.what());
-  }
+/// The task comes again after a while, which grows with each time; false where it has come so often
+/// in a row.
+bool TaskRunner::wait(const Task& task, const Setback& setback, int most) {
+  const auto delay = wait_after(task.attempts);
+  const int times = workshop_.setbacks.add(task.job_id, setback, delay);
+  if (times >= most) return false;
+  if ((times & (times - 1)) == 0)
+    spdlog::warn("render {}: {}; again in {} ms", task.job_id, setback.what(), delay.count());
+  // Of a job that was canceled, or that another works on, nothing waits.
+  if (!workshop_.store.release(task, delay.count(), true)) workshop_.setbacks.clear(task.job_id);
+  return true;
 }
 
 }  // namespace translucube::server

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <stop_token>
 #include <string>
 
@@ -15,7 +16,8 @@ class TaskRunner {
   explicit TaskRunner(Workshop& workshop) : workshop_(workshop) {}
 
   /// Traces the task's pass, merges it, and ends the job or plans its next pass. Whatever fails
-  /// ends in the store: as a failed job, or as a task to try again. `work` stops the tracing; the
+  /// ends in the store: as a failed job, or as a task to try again, without end where the world is
+  /// at fault. `work` stops the tracing; the
   /// task is then given back. Does not throw.
   void run(const Task& task, std::stop_source work);
   /// Frees the memory of the last job. What is not on the disk of it is written first.
@@ -28,8 +30,11 @@ class TaskRunner {
   std::variant<TracedPass, OutOfTime, Stopped> trace_or_read(const Task& task,
                                                              std::stop_source work);
   void give_back(const Task& task);
+  void settle(const Task& task);
+  void refuse(const Task& task, const api::RenderRequest& request, const SceneError& error);
   void fail(const Task& task, const api::Problem& problem);
-  void retry_later(const Task& task, const std::string& reason);
+  static constexpr int any_number = std::numeric_limits<int>::max();
+  bool wait(const Task& task, const Setback& setback, int most = any_number);
 
   Workshop& workshop_;
   Hand hand_;

@@ -13,8 +13,12 @@ constexpr std::chrono::milliseconds poll_interval(500);
 constexpr unsigned interactive_share = 3;  ///< interactive tasks for one of a batch
 constexpr int nicer_than_others = 10;
 
-WorkerPool::WorkerPool(Workshop workshop, int workers, std::function<void()> on_change)
-    : workshop_(std::move(workshop)), on_change_(std::move(on_change)), workers_(workers) {
+WorkerPool::WorkerPool(Workshop workshop, int workers, std::function<void()> on_change,
+                       std::function<Intake(int others)> intake)
+    : workshop_(std::move(workshop)),
+      on_change_(std::move(on_change)),
+      intake_(std::move(intake)),
+      workers_(workers) {
   for (int i = 0; i < workers; ++i)
     threads_.emplace_back([this, i](std::stop_token stop) { work(i, stop); });
 }
@@ -47,12 +51,16 @@ void WorkerPool::stop_job(const std::string& id) {
 
 std::optional<Task> WorkerPool::claim(int worker, const std::string& in_hand) {
   JobStore& store = workshop_.store;
-  if (workers_ > 1 && worker == 0) return store.claim(Priority::interactive, in_hand);
+  const Intake intake = intake_([&] {
+    const std::lock_guard lock(mutex_);
+    return static_cast<int>(running_.size());
+  }());
+  if (workers_ > 1 && worker == 0) return store.claim(Priority::interactive, in_hand, intake);
   const bool batch_first = turns_++ % (interactive_share + 1) == interactive_share;
   const Priority first = batch_first ? Priority::batch : Priority::interactive;
   const Priority second = batch_first ? Priority::interactive : Priority::batch;
-  auto task = store.claim(first, in_hand);
-  return task ? task : store.claim(second, in_hand);
+  auto task = store.claim(first, in_hand, intake);
+  return task ? task : store.claim(second, in_hand, intake);
 }
 
 void WorkerPool::work(int worker, std::stop_token stop) {
@@ -72,13 +80,14 @@ void WorkerPool::work(int worker, std::stop_token stop) {
     std::optional<Task> task;
     try {
       task = claim(worker, runner.job_in_hand());
-    } catch (const StoreError& error) {
-      spdlog::error("no task claimed: {}", error.what());
+      if (task)
+        run(runner, *task, stop);
+      else
+        runner.put_down();
+    } catch (const std::exception& error) {  // StoreError, or no memory
+      spdlog::error("a worker has no task: {}", error.what());
+      task.reset();
     }
-    if (task)
-      run(runner, *task, stop);
-    else
-      runner.put_down();
     std::unique_lock lock(mutex_);
     if (--busy_ == 0) idle_.notify_all();
     if (task) continue;

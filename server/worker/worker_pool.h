@@ -25,8 +25,10 @@ namespace translucube::server {
 /// kinds wait. They yield the processor to the threads that answer.
 class WorkerPool {
  public:
-  /// `on_change` is called by the workers whenever a job in the store has changed.
-  WorkerPool(Workshop workshop, int workers, std::function<void()> on_change);
+  /// `on_change` is called by the workers whenever a job in the store has changed; `intake` says
+  /// which tasks may be begun beside so many others at work.
+  WorkerPool(Workshop workshop, int workers, std::function<void()> on_change,
+             std::function<Intake(int others)> intake);
   ~WorkerPool();  ///< stops
 
   void wake();                           ///< there may be a task
@@ -42,6 +44,7 @@ class WorkerPool {
 
   Workshop workshop_;
   std::function<void()> on_change_;
+  std::function<Intake(int others)> intake_;
   std::mutex mutex_;
   std::condition_variable_any awake_, idle_;
   std::uint64_t wakes_ = 0;

@@ -9,6 +9,8 @@
 #include "server/store/artifact_store.h"
 #include "server/store/job_store.h"
 #include "server/worker/engine.h"
+#include "server/worker/memory_budget.h"
+#include "server/worker/setbacks.h"
 
 namespace translucube::server {
 
@@ -20,14 +22,15 @@ struct Workshop {
   Metrics& metrics;
   LiveFilms& live_films;
   ExplorableCache& explorables;
+  Setbacks& setbacks;
+  MemoryBudget& memory;
   Engine engine;
   int threads = 0;  ///< for each render; 0: all cores
 
   int cores() const;  ///< of a render
 };
 
-/// Removes the files of a job that will never be asked for them: it failed, was canceled or
-/// removed.
+/// Removes the films of a job that has ended or was removed: nobody asks for them again.
 void tidy(Workshop& workshop, const std::string& job_id);
 
 }  // namespace translucube::server

@@ -118,7 +118,10 @@ struct FakeRenderer {
 
 struct ServiceOptions {
   int workers = 1;
-  StoreOptions store;
+  StoreOptions store{};
+  std::uint64_t memory_bytes = 0;
+  std::uint64_t artifact_bytes = std::uint64_t{20} << 30;
+  int keep_days = 36'500;  // stores of old versions are of old dates
 };
 
 /// The whole service but its socket.
@@ -132,7 +135,7 @@ class TestService {
         own_store(open_job_store(data.store_file(), options.store)),
         store(*own_store),
         artifacts(data.artifacts()),
-        service(catalog, config, colors, store, artifacts, metrics, std::move(engine)) {}
+        service(catalog, config, colors, store, artifacts, data, metrics, std::move(engine)) {}
 
   api::RenderStatus submit(const std::string& document, std::optional<std::string> key = {}) {
     auto result = service.submit(document, key);
@@ -189,6 +192,9 @@ class TestService {
     ServerConfig config = read_server_config(file);
     config.workers = options.workers;
     config.threads_per_worker = 1;
+    config.memory_bytes = options.memory_bytes;
+    config.artifact_bytes = options.artifact_bytes;
+    config.keep_days = options.keep_days;
     return config;
   }
 };

@@ -59,6 +59,8 @@ TEST_F(ServerConfigTest, IsReadWhole) {
                                     {"queue_length", 12},
                                     {"interactive_seconds", 1.5},
                                     {"artifact_bytes", 1 << 21},
+                                    {"keep_days", 30},
+                                    {"memory_bytes", 14},
                                     {"explorable_memory_bytes", 13},
                                     {"log_format", "json"}});
   EXPECT_EQ(server.host, "::1");
@@ -81,6 +83,8 @@ TEST_F(ServerConfigTest, IsReadWhole) {
   EXPECT_EQ(server.queue_length, 12u);
   EXPECT_EQ(server.interactive_seconds, 1.5);
   EXPECT_EQ(server.artifact_bytes, 1u << 21);
+  EXPECT_EQ(server.keep_days, 30);
+  EXPECT_EQ(server.memory_bytes, 14u);
   EXPECT_EQ(server.explorable_memory_bytes, 13u);
   EXPECT_EQ(server.log_format, LogFormat::json);
 }
@@ -127,6 +131,8 @@ TEST_F(ServerConfigTest, TheShippedSectionHoldsTheDefaults) {
   EXPECT_EQ(given.queue_length, defaults.queue_length);
   EXPECT_EQ(given.interactive_seconds, defaults.interactive_seconds);
   EXPECT_EQ(given.artifact_bytes, defaults.artifact_bytes);
+  EXPECT_EQ(given.keep_days, defaults.keep_days);
+  EXPECT_EQ(given.memory_bytes, defaults.memory_bytes);
   EXPECT_EQ(given.explorable_memory_bytes, defaults.explorable_memory_bytes);
   EXPECT_EQ(given.log_format, defaults.log_format);
 }

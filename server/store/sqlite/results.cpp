@@ -5,6 +5,7 @@ namespace translucube::server {
 
 using rows::Lock;
 using sql::Statement;
+using sql::Transaction;
 
 namespace {
 
@@ -54,11 +55,44 @@ void SqliteJobStore::resize_result(const std::string& content, std::uint64_t byt
 }
 
 bool SqliteJobStore::remove_result(const StoredResult& result) {
+  Transaction transaction(writer_);
+  Statement(writer_, "DELETE FROM results WHERE content = ? AND image = ?")
+      .bind(result.content, result.image)
+      .run();
+  if (writer_.changes() == 0) return false;
+  leave_over({result.content, result.image});
+  transaction.commit();
+  return true;
+}
+
+void SqliteJobStore::lose_result(const StoredResult& result) {
   const Lock lock(writer_.mutex);
   Statement(writer_, "DELETE FROM results WHERE content = ? AND image = ?")
       .bind(result.content, result.image)
       .run();
-  return writer_.changes() > 0;
+}
+
+void SqliteJobStore::leave_over(const Leftover& removed) {
+  Statement(writer_, "INSERT OR IGNORE INTO leftovers(folder, image) VALUES (?, ?)")
+      .bind(removed.folder, removed.image)
+      .run();
+}
+
+std::vector<Leftover> SqliteJobStore::leftovers() const {
+  const Lock lock(reader_.mutex);
+  Statement statement(reader_, "SELECT folder, image FROM leftovers");
+  std::vector<Leftover> all;
+  while (statement.step()) all.push_back({statement.text(0), statement.text(1)});
+  return all;
+}
+
+void SqliteJobStore::forget(const Leftover& removed) {
+  // Lost to a power cut, it is looked for again, and not found.
+  Transaction transaction(writer_, sql::Durability::process);
+  Statement(writer_, "DELETE FROM leftovers WHERE folder = ? AND image = ?")
+      .bind(removed.folder, removed.image)
+      .run();
+  transaction.commit();
 }
 
 void SqliteJobStore::insert_results(const std::vector<StoredResult>& results) {
@@ -81,6 +115,7 @@ std::vector<StoredResult> SqliteJobStore::drop_unused_results(
         writer_, "content = ?1 AND NOT EXISTS (SELECT 1 FROM pictures WHERE pictures.content = ?1)",
         content);
     if (!result) continue;
+    leave_over({content, result->image});
     unused.push_back(std::move(*result));
     Statement(writer_, "DELETE FROM results WHERE content = ?").bind(content).run();
   }

@@ -2,6 +2,8 @@
 
 // Rows as values: how each is selected, read and found.
 
+#include <spdlog/spdlog.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "api/answer/event.h"
 #include "server/store/job.h"
 #include "server/store/sqlite/connection.h"
+#include "server/store/store_error.h"
 
 namespace translucube::server::rows {
 
@@ -63,7 +66,11 @@ std::vector<Row> page(sql::Connection& connection, const std::string& condition,
   if (filter.state) statement.bind(text(*filter.state));
   statement.bind(filter.limit);
   std::vector<Row> rows;
-  while (statement.step()) rows.push_back(Query<Row>::read(statement));
+  while (statement.step()) try {
+      rows.push_back(Query<Row>::read(statement));
+    } catch (const StoreError& error) {
+      spdlog::error("{} is left out of a list: {}", statement.text(0), error.what());
+    }
   return rows;
 }
 

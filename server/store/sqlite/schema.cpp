@@ -8,7 +8,7 @@ namespace {
 using sql::Statement;
 using sql::Transaction;
 
-constexpr int schema_version = 2;
+constexpr int schema_version = 3;
 
 /// What version 1 was: a store of that age is brought up to date from here.
 constexpr const char* schema_1 = R"sql(
@@ -103,6 +103,27 @@ INSERT INTO results SELECT id, image, NULL, COALESCE(stats, '{}'), 0, finished_m
 ALTER TABLE jobs DROP COLUMN image;
 )sql";
 
+/// Deaths of the process while a job was worked on (recovery.cpp); files of what was removed.
+constexpr const char* from_2_to_3 = R"sql(
+ALTER TABLE jobs ADD COLUMN deaths INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN suspect INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE tasks ADD COLUMN renewed INTEGER NOT NULL DEFAULT 0;
+CREATE INDEX jobs_suspect ON jobs(id) WHERE suspect = 1;
+CREATE TABLE process(
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  ends_as_told INTEGER NOT NULL);
+INSERT INTO process VALUES (1, 0);
+ALTER TABLE jobs ADD COLUMN picture_bytes INTEGER NOT NULL DEFAULT 0;
+CREATE INDEX jobs_by_need ON jobs(picture_bytes) WHERE state IN ('queued', 'running');
+CREATE INDEX renders_by_end ON jobs(finished_ms)
+  WHERE sweep_id IS NULL AND finished_ms IS NOT NULL;
+CREATE INDEX sweeps_by_end ON sweeps(finished_ms) WHERE finished_ms IS NOT NULL;
+CREATE TABLE leftovers(
+  folder TEXT NOT NULL,
+  image TEXT NOT NULL,
+  PRIMARY KEY (folder, image)) WITHOUT ROWID;
+)sql";
+
 /// SQLite reads the bytes that its last page lacks as zeros.
 bool ends_in_a_page(sql::Connection& writer, const std::filesystem::path& file) {
   Statement page_size(writer, "PRAGMA page_size");
@@ -112,32 +133,44 @@ bool ends_in_a_page(sql::Connection& writer, const std::filesystem::path& file) 
          (page_size.step() && bytes % static_cast<std::uintmax_t>(page_size.integer(0)) == 0);
 }
 
+std::int64_t version_of(sql::Connection& writer) {
+  Statement statement(writer, "PRAGMA user_version");
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+void check(sql::Connection& writer, const std::filesystem::path& file, std::int64_t version) {
+  const auto corrupt = [&](const std::string& why) {
+    return StoreError(StoreError::Kind::corrupt,
+                      "the job store " + file.string() + " is corrupt: " + why);
+  };
+  if (version > schema_version)
+    throw StoreError(StoreError::Kind::unavailable,
+                     "the job store " + file.string() + " was written by a newer translucube");
+  if (version <= 0) return;
+  if (!ends_in_a_page(writer, file)) throw corrupt("it was cut short");
+  Statement check(writer, "PRAGMA quick_check(1)");
+  if (!check.step() || check.text(0) != "ok") throw corrupt(check.text(0));
+}
+
+void upgrade(sql::Connection& writer, std::int64_t version) {
+  Transaction transaction(writer);
+  if (version < 1) writer.execute(schema_1);
+  if (version < 2) writer.execute(from_1_to_2);
+  writer.execute(from_2_to_3);
+  writer.execute("PRAGMA user_version = " + std::to_string(schema_version));
+  transaction.commit();
+}
+
 }  // namespace
 
 void prepare_schema(sql::Connection& writer, const std::filesystem::path& file) {
   writer.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
-  const std::int64_t version = [&] {
-    Statement statement(writer, "PRAGMA user_version");
-    return statement.step() ? statement.integer(0) : 0;
-  }();
-  if (version > schema_version)
-    throw StoreError(StoreError::Kind::unavailable,
-                     "the job store " + file.string() + " was written by a newer translucube");
-  if (version > 0) {
-    if (!ends_in_a_page(writer, file))
-      throw StoreError(StoreError::Kind::corrupt,
-                       "the job store " + file.string() + " is corrupt: it was cut short");
-    Statement check(writer, "PRAGMA quick_check(1)");
-    if (!check.step() || check.text(0) != "ok")
-      throw StoreError(StoreError::Kind::corrupt,
-                       "the job store " + file.string() + " is corrupt: " + check.text(0));
-  }
+  const std::int64_t version = version_of(writer);
+  check(writer, file, version);
   if (version == schema_version) return;
-  Transaction transaction(writer);
-  if (version == 0) writer.execute(schema_1);
-  writer.execute(from_1_to_2);
-  writer.execute("PRAGMA user_version = " + std::to_string(schema_version));
-  transaction.commit();
+  upgrade(writer, version);
+  // The file itself says from now on what it is, and not its journal alone.
+  writer.execute("PRAGMA wal_checkpoint(TRUNCATE)");
 }
 
 }  // namespace translucube::server

@@ -28,17 +28,12 @@ SqliteJobStore::SqliteJobStore(const std::string& file, StoreOptions options)
       owner_(random_hex(16)),
       writer_(file, sql::Connection::Access::read_write),
       own_reader_(open_reader(file, writer_)),
-      reader_(own_reader_ ? *own_reader_ : writer_) {
+      reader_(own_reader_ ? *own_reader_ : writer_),
+      checkpointer_(
+          own_reader_ ? std::make_unique<sql::Connection>(file, sql::Connection::Access::read_write)
+                      : nullptr) {
   Transaction transaction(writer_);
-  Statement(writer_,
-            "UPDATE tasks SET state = 'ready', owner = NULL, not_before_ms = 0 "
-            "WHERE state <> 'done'")
-      .run();
-  std::vector<std::string> interrupted;
-  Statement running(writer_, "SELECT id FROM jobs WHERE state = ?");
-  running.bind(rows::text(JobState::running));
-  while (running.step()) interrupted.push_back(running.text(0));
-  for (const std::string& id : interrupted) move(id, JobState::queued);
+  take_over();
   Statement newest(writer_,
                    "SELECT MAX(id) FROM (SELECT MAX(id) AS id FROM jobs UNION ALL "
                    "SELECT MAX(id) FROM sweeps)");
@@ -109,6 +104,12 @@ std::optional<std::vector<StoredResult>> SqliteJobStore::remove(const std::strin
                       "(SELECT id FROM jobs WHERE id = ?1 OR sweep_id = ?1)");
   statement.bind(id);
   while (statement.step()) contents.push_back(statement.text(0));
+  Statement(
+      writer_,
+      "INSERT OR IGNORE INTO leftovers SELECT id, '' FROM jobs WHERE id = ?1 OR sweep_id = ?1 "
+      "UNION ALL SELECT id, '' FROM sweeps WHERE id = ?1")
+      .bind(id)
+      .run();
   Statement(writer_, "DELETE FROM jobs WHERE id = ?1 OR sweep_id = ?1").bind(id).run();
   const int jobs = writer_.changes();
   Statement(writer_, "DELETE FROM sweeps WHERE id = ?").bind(id).run();
@@ -116,6 +117,25 @@ std::optional<std::vector<StoredResult>> SqliteJobStore::remove(const std::strin
   std::vector<StoredResult> unused = drop_unused_results(contents);
   transaction.commit();
   return unused;
+}
+
+std::vector<std::string> SqliteJobStore::ended_before(std::int64_t time_ms, int most) const {
+  const Lock lock(reader_.mutex);
+  Statement statement(reader_,
+                      "SELECT id, finished_ms FROM jobs WHERE sweep_id IS NULL AND "
+                      "finished_ms IS NOT NULL AND finished_ms < ?1 UNION ALL "
+                      "SELECT id, finished_ms FROM sweeps WHERE finished_ms IS NOT NULL AND "
+                      "finished_ms < ?1 ORDER BY finished_ms LIMIT ?2");
+  statement.bind(time_ms, most);
+  std::vector<std::string> ids;
+  while (statement.step()) ids.push_back(statement.text(0));
+  return ids;
+}
+
+void SqliteJobStore::checkpoint() {
+  if (!checkpointer_) return;
+  const Lock lock(checkpointer_->mutex);
+  checkpointer_->execute("PRAGMA wal_checkpoint(PASSIVE)");
 }
 
 void SqliteJobStore::check_writable() {

@@ -35,10 +35,13 @@ class SqliteJobStore final : public JobStore {
   std::optional<PointPicture> picture_of_point(const std::string& sweep_id,
                                                std::uint32_t point) const override;
   std::optional<std::vector<StoredResult>> remove(const std::string& id) override;
+  std::vector<std::string> ended_before(std::int64_t time_ms, int most) const override;
   void check_writable() override;
+  void checkpoint() override;
 
   // tasks.cpp
-  std::optional<Task> claim(Priority priority, const std::string& preferred) override;
+  std::optional<Task> claim(Priority priority, const std::string& preferred,
+                            Intake intake) override;
   bool renew(const Task& task) override;
   bool release(const Task& task, std::int64_t delay_ms, bool counts_as_attempt) override;
   bool complete(const Task& task, const Completion& completion, const Pass& next) override;
@@ -48,11 +51,17 @@ class SqliteJobStore final : public JobStore {
   bool fail(const Task& task, const std::string& error) override;
   std::int64_t lease_ms() const override { return options_.lease_ms; }
 
+  // recovery.cpp
+  void announce_end() override;
+
   // results.cpp
   std::optional<StoredResult> find_result(const std::string& content) const override;
   void touch_result(const std::string& content) override;
   void resize_result(const std::string& content, std::uint64_t bytes) override;
   bool remove_result(const StoredResult& result) override;
+  void lose_result(const StoredResult& result) override;
+  std::vector<Leftover> leftovers() const override;
+  void forget(const Leftover& removed) override;
   std::vector<StoredResult> least_recently_used(std::uint64_t bytes) const override;
   std::uint64_t result_bytes() const override;
 
@@ -61,6 +70,7 @@ class SqliteJobStore final : public JobStore {
   std::vector<Event> events_after(const std::string& subject, std::uint64_t number) const override;
   std::uint64_t last_event(const std::string& subject) const override;
   QueueGauges gauges() const override;
+  OpenNeeds open_needs() const override;
 
  private:
   struct NewRow;
@@ -69,9 +79,15 @@ class SqliteJobStore final : public JobStore {
   bool queue_has_room(std::size_t jobs);
   std::string insert_job(const NewRow& row);
   std::optional<std::string> use_results(const std::vector<Picture>& lanes, std::int64_t now);
+  void leave_over(const Leftover& removed);
   void insert_results(const std::vector<StoredResult>& results);
   std::vector<StoredResult> drop_unused_results(const std::vector<std::string>& contents);
-  std::optional<Task> claim_one(Priority priority, const std::string& only_job);
+  void take_over();
+  void judge(const std::string& id, bool for_sure);
+  enum class Trial { none, due, under_way };
+  Trial trial();
+  template <typename... Values>
+  std::optional<Task> claim_one(const std::string& condition, const Values&... values);
   bool holds(const Task& task);
   bool move(const std::string& id, api::JobState to);
   void follow_sweep(const std::string& sweep_id);
@@ -93,7 +109,8 @@ class SqliteJobStore final : public JobStore {
   std::string owner_;  ///< this process
   sql::Connection writer_;
   std::unique_ptr<sql::Connection> own_reader_;
-  sql::Connection& reader_;  ///< the writer for ":memory:"
+  sql::Connection& reader_;                        ///< the writer for ":memory:"
+  std::unique_ptr<sql::Connection> checkpointer_;  ///< nullptr for ":memory:"
   std::unique_ptr<IdSource> ids_;
 };
 

@@ -24,7 +24,8 @@ bool SqliteJobStore::move(const std::string& id, JobState to) {
         .bind(now, id)
         .run();
   if (api::is_end(to))
-    Statement(writer_, "UPDATE jobs SET finished_ms = ?, eta_seconds = NULL WHERE id = ?")
+    Statement(writer_,
+              "UPDATE jobs SET finished_ms = ?, eta_seconds = NULL, suspect = 0 WHERE id = ?")
         .bind(now, id)
         .run();
   Statement(writer_, "UPDATE jobs SET state = ? WHERE id = ?").bind(rows::text(to), id).run();
@@ -63,7 +64,7 @@ void SqliteJobStore::cancel_sweep(const std::string& id) {
   const std::int64_t now = options_.clock();
   const std::string canceled = rows::text(JobState::canceled);
   Statement(writer_,
-            "UPDATE jobs SET state = ?, finished_ms = ?, eta_seconds = NULL "
+            "UPDATE jobs SET state = ?, finished_ms = ?, eta_seconds = NULL, suspect = 0 "
             "WHERE sweep_id = ? AND state IN (?, ?)")
       .bind(canceled, now, id, rows::text(JobState::queued), rows::text(JobState::running))
       .run();
@@ -115,6 +116,15 @@ std::uint64_t SqliteJobStore::last_event(const std::string& subject) const {
   const Lock lock(reader_.mutex);
   Statement statement(reader_, "SELECT COALESCE(MAX(number), 0) FROM events WHERE subject = ?");
   return statement.bind(subject).step() ? static_cast<std::uint64_t>(statement.integer(0)) : 0;
+}
+
+OpenNeeds SqliteJobStore::open_needs() const {
+  const Lock lock(reader_.mutex);
+  Statement sum(reader_,
+                "SELECT COALESCE(SUM(picture_bytes), 0), COALESCE(MAX(picture_bytes), 0) FROM jobs "
+                "WHERE state IN ('queued', 'running')");
+  if (!sum.step()) return {};
+  return {static_cast<std::uint64_t>(sum.integer(0)), static_cast<std::uint64_t>(sum.integer(1))};
 }
 
 QueueGauges SqliteJobStore::gauges() const {

@@ -35,6 +35,7 @@ struct SqliteJobStore::NewRow {
   std::optional<SweepImage> sweep_image;
   const std::vector<Picture>& lanes;
   Pass first_pass;
+  std::uint64_t picture_bytes = 0;
 };
 
 /// A render or an image of a sweep with its pictures, and its first task unless it is done; its id.
@@ -44,13 +45,14 @@ std::string SqliteJobStore::insert_job(const NewRow& row) {
   const auto& sweep = row.sweep_image;
   Statement(writer_,
             "INSERT INTO jobs(id, state, request, material, idempotency_key, created_ms, "
-            "finished_ms, total_samples, stats, cached, sweep_id, image_index, points) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+            "finished_ms, total_samples, stats, cached, sweep_id, image_index, points, "
+            "picture_bytes) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .bind(id, text(cached ? JobState::succeeded : JobState::queued), row.request, row.material,
             row.idempotency_key, row.now, cached ? std::optional(row.now) : std::nullopt,
             row.total_samples, row.stats, cached ? 1 : 0,
             sweep ? std::optional(sweep->sweep_id) : std::nullopt, sweep ? sweep->index : 0,
-            static_cast<std::int64_t>(row.lanes.size()))
+            static_cast<std::int64_t>(row.lanes.size()),
+            static_cast<std::int64_t>(row.picture_bytes))
       .run();
   for (std::size_t lane = 0; lane < row.lanes.size(); ++lane)
     Statement(writer_, "INSERT INTO pictures(job_id, lane, point, content) VALUES (?, ?, ?, ?)")
@@ -76,7 +78,7 @@ api::Result<Submitted<Job>> SqliteJobStore::submit(const NewJob& job) {
   if (!stats && !queue_has_room(1)) return queue_full();
   const std::string id =
       insert_job({job.request, job.material, job.idempotency_key, now, job.total_samples, stats,
-                  std::nullopt, lanes, job.first_pass});
+                  std::nullopt, lanes, job.first_pass, job.picture_bytes});
   tell_state(id);
   Submitted<Job> submitted{rows::find<Job>(writer_, "id = ?", id).value(), true};
   transaction.commit();
@@ -106,7 +108,7 @@ api::Result<Submitted<StoredSweep>> SqliteJobStore::submit(const NewSweep& sweep
   for (std::uint32_t image = 0; image < sweep.images.size(); ++image) {
     const std::vector<Picture>& lanes = sweep.images[image];
     insert_job({"", "", std::nullopt, now, sweep.total_samples, made[image], SweepImage{id, image},
-                lanes, sweep.first_pass});
+                lanes, sweep.first_pass, lanes.size() * sweep.picture_bytes});
     if (made[image]) std::ranges::transform(lanes, std::back_inserter(there), &Picture::point);
   }
   const api::StateCounts counts = rows::point_counts(writer_, id);

@@ -11,7 +11,7 @@ using sql::Transaction;
 
 namespace {
 
-/// The pass is done where it was whole, and the job has come so far.
+/// The pass is done where it was whole, and the job has come so far: it was no cause of a death.
 void store_completion(sql::Connection& writer, const Task& task, const Completion& completion) {
   if (completion.pass_seconds)
     Statement(writer,
@@ -21,7 +21,7 @@ void store_completion(sql::Connection& writer, const Task& task, const Completio
   const Progress& progress = completion.progress;
   Statement(writer,
             "UPDATE jobs SET passes = ?, samples = ?, total_samples = ?, relative_error = ?, "
-            "seconds = ?, eta_seconds = ? WHERE id = ?")
+            "seconds = ?, eta_seconds = ?, deaths = 0, suspect = 0 WHERE id = ?")
       .bind(progress.passes, progress.samples, progress.total_samples, progress.relative_error,
             progress.seconds, progress.eta_seconds, task.job_id)
       .run();
@@ -29,21 +29,22 @@ void store_completion(sql::Connection& writer, const Task& task, const Completio
 
 }  // namespace
 
-std::optional<Task> SqliteJobStore::claim_one(Priority priority, const std::string& only_job) {
+/// The oldest task that is due and for which the condition holds.
+template <typename... Values>
+std::optional<Task> SqliteJobStore::claim_one(const std::string& condition,
+                                              const Values&... values) {
   const std::int64_t now = options_.lease_clock();
-  Statement statement(writer_, std::string(R"sql(
+  Statement statement(writer_, R"sql(
 UPDATE tasks SET state = 'leased', owner = ?, lease_until_ms = ?,
-                 fencing_token = fencing_token + 1, attempts = attempts + 1
+                 fencing_token = fencing_token + 1, attempts = attempts + 1, renewed = 0
 WHERE (job_id, pass_index) = (
   SELECT job_id, pass_index FROM tasks
-  WHERE state <> 'done' AND priority = ? AND ((state = 'ready' AND not_before_ms <= ?)
-                             OR (state = 'leased' AND lease_until_ms < ?)) )sql") +
-                                   (only_job.empty() ? "" : "AND job_id = ? ") +
-                                   R"sql(
+  WHERE state <> 'done' AND ((state = 'ready' AND not_before_ms <= ?)
+                             OR (state = 'leased' AND lease_until_ms < ?)) AND )sql" +
+                                   condition + R"sql(
   ORDER BY job_id, pass_index LIMIT 1)
-RETURNING job_id, pass_index, first_sample, sample_count, fencing_token, attempts)sql");
-  statement.bind(owner_, now + options_.lease_ms, static_cast<int>(priority), now, now);
-  if (!only_job.empty()) statement.bind(only_job);
+RETURNING job_id, pass_index, first_sample, sample_count, fencing_token, attempts, priority)sql");
+  statement.bind(owner_, now + options_.lease_ms, now, now, values...);
   if (!statement.step()) return std::nullopt;
   Task task{statement.text(0),
             {static_cast<std::uint32_t>(statement.integer(1)),
@@ -51,17 +52,30 @@ RETURNING job_id, pass_index, first_sample, sample_count, fencing_token, attempt
              static_cast<std::uint32_t>(statement.integer(3))},
             statement.integer(4),
             static_cast<int>(statement.integer(5)),
-            priority};
+            static_cast<Priority>(statement.integer(6))};
   statement.run();
   return task;
 }
 
-std::optional<Task> SqliteJobStore::claim(Priority priority, const std::string& preferred) {
+std::optional<Task> SqliteJobStore::claim(Priority priority, const std::string& preferred,
+                                          Intake intake) {
+  if (intake == Intake::none) return std::nullopt;
   // A claim that is lost to a power cut is made again: nobody was promised anything.
   Transaction transaction(writer_, sql::Durability::process);
+  const int wanted = static_cast<int>(priority);
+  const std::string begun = intake == Intake::begun ? " AND pass_index > 0" : "";
   std::optional<Task> task;
-  if (!preferred.empty()) task = claim_one(priority, preferred);
-  if (!task) task = claim_one(priority, {});
+  switch (trial()) {
+    case Trial::under_way:
+      return std::nullopt;
+    case Trial::due:
+      task = claim_one("job_id IN (SELECT id FROM jobs WHERE suspect = 1)");
+      break;
+    case Trial::none:
+      if (!preferred.empty())
+        task = claim_one("priority = ? AND job_id = ?" + begun, wanted, preferred);
+      if (!task) task = claim_one("priority = ?" + begun, wanted);
+  }
   if (!task) return std::nullopt;
   move(task->job_id, JobState::running);  // no move where it is running already
   transaction.commit();
@@ -77,7 +91,9 @@ bool SqliteJobStore::holds(const Task& task) {
 
 bool SqliteJobStore::renew(const Task& task) {
   return while_held(task, [&] {
-    Statement(writer_, "UPDATE tasks SET lease_until_ms = ? WHERE job_id = ? AND pass_index = ?")
+    Statement(
+        writer_,
+        "UPDATE tasks SET lease_until_ms = ?, renewed = 1 WHERE job_id = ? AND pass_index = ?")
         .bind(options_.lease_clock() + options_.lease_ms, task.job_id, task.pass.index)
         .run();
     return true;

@@ -272,8 +272,7 @@ TEST(JobServiceTest, WhatCanBeMadeAnewIsRemovedAtTheStart) {
     EXPECT_TRUE(tested.service.image(id, {}));
     // What a crash between the end of the job and the removal of its checkpoints leaves.
     tested.artifacts.write(id, "film-4.bin", "left over");
-    tested.artifacts.write(tested.content(id), "image-9-9.exr", "of a late double");
-    EXPECT_EQ(tested.artifacts.names(tested.content(id)).size(), 3u);
+    EXPECT_EQ(tested.artifacts.names(tested.content(id)).size(), 2u);
   }
   TestService tested(folder.path(), renderer.engine());
   EXPECT_EQ(tested.artifacts.names(id).size(), 0u);
@@ -281,15 +280,37 @@ TEST(JobServiceTest, WhatCanBeMadeAnewIsRemovedAtTheStart) {
   EXPECT_TRUE(tested.service.image(id, {}));
 }
 
-TEST(JobServiceTest, FilesThatBelongToNoRenderAreRemovedAtTheStart) {
+TEST(JobServiceTest, FilesOfWhatWasRemovedAreRemovedAtTheStart) {
   const TempFolder folder;
   FakeRenderer renderer;
+  std::string removed, content;
   {
     TestService tested(folder.path(), renderer.engine());
-    tested.artifacts.write(unknown_id, "image.exr", "left over");
+    removed = tested.wait(tested.submit(small_request(4)).id).id;
+    content = tested.content(removed);
+    // What a crash between the removal and that of the files leaves.
+    ASSERT_TRUE(tested.store.remove(removed));
+    tested.artifacts.write(removed, "film-4.bin", "left over");
   }
   const TestService tested(folder.path(), renderer.engine());
   EXPECT_THAT(tested.artifacts.ids(), IsEmpty());
+  EXPECT_THAT(tested.store.leftovers(), IsEmpty());
+}
+
+TEST(JobServiceTest, FilesThatTheStoreDoesNotKnowStayAndAreTold) {
+  const TempFolder folder;
+  FakeRenderer renderer;
+  const std::string content(64, 'a');
+  {
+    TestService tested(folder.path(), renderer.engine());
+    tested.artifacts.write(unknown_id, "film-4.bin", "of a newer store");
+    tested.artifacts.write(content, "image.exr", "of a newer store");
+  }
+  const TestService tested(folder.path(), renderer.engine());
+  EXPECT_THAT(tested.artifacts.ids(), testing::UnorderedElementsAre(unknown_id, content));
+  EXPECT_EQ(tested.artifacts.figures().unknown, 2u);
+  EXPECT_EQ(tested.artifacts.figures().unknown_bytes, 32u);
+  EXPECT_EQ(tested.artifacts.figures().bytes, 0u) << "and nothing known gives way to them";
 }
 
 TEST(JobServiceTest, ManyClientsAtOnceLoseNothing) {

@@ -126,8 +126,8 @@ TEST(RenderTaskTest, WhateverTheRendererThrowsFailsTheRenderAndNotTheWorker) {
   FakeRenderer renderer;
   TestService tested(folder.path(), renderer.engine());
   const std::vector<Failure> failures{
-      {[] { throw SceneError(SceneError::Part::environment, "cannot be read"); },
-       R"("pointer":"/scene/environment")"},
+      {[] { throw SceneError(SceneError::Part::camera, "it is behind the backdrop"); },
+       R"("pointer":"/scene/camera")"},
       {[] { throw std::bad_alloc(); }, "not enough memory"},
       {[] { throw std::runtime_error("a secret path"); }, "The renderer failed"}};
   for (const Failure& failure : failures) {
@@ -237,22 +237,26 @@ TEST(RenderTaskTest, APassThatTwoWorkersTraceCountsOnce) {
   EXPECT_EQ(tested.exr(id), expected);
 }
 
-TEST(RenderTaskTest, ARenderThatEndsTheProcessAgainAndAgainIsGivenUp) {
+TEST(RenderTaskTest, ARenderThatEndedTheProcessTwiceIsNotTracedAgain) {
   const TempFolder folder;
   std::string id;
   {
     FakeRenderer renderer;
     TestService tested(folder.path(), renderer.engine(), {0, {}});
     id = tested.submit(small_request(4)).id;
+    tested.artifacts.write(id, "pass-0.film", "of it");
   }
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 2; ++i) {
     const auto store = open_job_store(folder / "jobs.sqlite");
     ASSERT_TRUE(store->claim(Priority::interactive));  // and the process dies with it
   }
   FakeRenderer renderer;
-  TestService tested(folder.path(), renderer.engine());
+  ServiceOptions options;
+  options.store.last_crashed = true;
+  TestService tested(folder.path(), renderer.engine(), options);
   EXPECT_EQ(tested.wait(id).state, JobState::failed);
   EXPECT_EQ(renderer.passes, 0);
+  EXPECT_THAT(tested.artifacts.names(id), IsEmpty());
 }
 
 }  // namespace

@@ -58,7 +58,10 @@ struct AcceptTest : testing::Test {
   LiveFilms live_films;
   ExplorableCache explorables{0};
   FakeRenderer here, elsewhere;
-  Workshop workshop{catalog, *store, artifacts, metrics, live_films, explorables, here.engine(), 1};
+  Setbacks setbacks;
+  MemoryBudget memory{std::uint64_t{1} << 40};
+  Workshop workshop{catalog,     *store,   artifacts, metrics,       live_films,
+                    explorables, setbacks, memory,    here.engine(), 1};
   std::string id;
   Task task;
   Hand hand;
@@ -83,6 +86,7 @@ TEST_F(AcceptTest, WhoLostItsClaimLeavesNothing) {
   store->cancel(id);
   EXPECT_FALSE(accept(workshop, hand, task, std::move(pass)));
   EXPECT_EQ(store->find(id)->progress.samples, 0u);
+  tidy(workshop, id);
   EXPECT_THAT(artifacts.ids(), testing::IsEmpty());
 }
 
