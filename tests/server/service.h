@@ -10,15 +10,17 @@
 #include <string>
 
 #include "tests/server/process/process.h"
+#include "tests/support/repository.h"
 
 namespace translucube::server::test {
 
 class Service {
  public:
   /// On a free port; returns once it listens.
-  explicit Service(const std::filesystem::path& data, const std::string& threads = "2")
+  explicit Service(const std::filesystem::path& data, const std::string& threads = "2",
+                   const std::filesystem::path& config = in_repository("config/service.json"))
       : process_({TRANSLUCUBE_BINARY, "serve", "--port", "0", "--data", data.string(), "--threads",
-                  threads}) {
+                  threads, "--config", config.string()}) {
     const std::string line = process_.line(), listening = "listening on http://127.0.0.1:";
     if (!line.starts_with(listening)) throw std::runtime_error("the service did not start");
     port_ = std::stoi(line.substr(listening.size()));
