@@ -37,6 +37,13 @@ inline void check_size(const std::filesystem::path& file, std::int64_t width, st
                std::to_string(width) + " x " + std::to_string(height) + " pixels, more than 2^28");
 }
 
+/// Throws ImageError where so few bytes cannot hold so many pixels: no format packs more than
+/// deflate's 1032 bytes of eight pixels each to a byte.
+inline void check_not_cut_off(std::int64_t width, std::int64_t height, std::size_t bytes) {
+  constexpr double densest = 8 * 1032;
+  if (double(width) * double(height) > densest * double(bytes)) throw ImageError("cut off");
+}
+
 /// Whether a colorspace as ImageMetadata names it has the sRGB transfer curve.
 inline bool is_srgb(const std::string& colorspace) {
   return colorspace.starts_with("sRGB/") && colorspace != "sRGB/raw";

@@ -39,6 +39,15 @@ void store(const Tile& tile, PassFilm& film) {
     }
 }
 
+/// One of so many equal shares of the time that is left.
+Patience share_of(const Patience& patience, double shares) {
+  if (!patience.has_deadline()) return patience;
+  const auto now = Patience::Clock::now();
+  const auto share = std::chrono::duration_cast<Patience::Clock::duration>(
+      (patience.deadline - now) / std::max(shares, 1.0));
+  return {patience.stop, now + share};
+}
+
 }  // namespace
 
 std::optional<Pass> plan_pass(std::uint32_t index, std::uint64_t pixels,
@@ -61,7 +70,7 @@ std::optional<Pass> plan_pass(std::uint32_t index, std::uint64_t pixels,
 }
 
 std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int threads,
-                                   std::stop_token stop) {
+                                   const Patience& patience) {
   PassFilm film;
   film.width = scene.width;
   film.height = scene.height;
@@ -71,6 +80,7 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
   film.sum.resize(std::size_t(3) * film.width * film.height * film.lanes);
   const int columns = tile_columns(film.width), rows = (film.height + tile_size - 1) / tile_size;
   std::vector<TraceCounters> counters(std::size_t(columns) * rows);
+  const std::stop_token& stop = patience.stop;
   std::atomic<double> cpu_seconds{0};
   share_turns(threads, columns * rows, [&](Turns& turns) {
     const double start = thread_cpu_seconds();
@@ -85,8 +95,13 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
       tile.width = std::min(tile_size, film.width - tile.x0);
       tile.height = std::min(tile_size, film.height - tile.y0);
       tile.sum.assign(pixel_floats * tile.width * tile.height * film.lanes, 0.0f);
-      for (std::uint32_t s = 0; s < pass.count && !stop.stop_requested(); s += samples_at_once)
-        trace_tile(scene, {pass.index, s, std::min(samples_at_once, pass.count - s)}, tile);
+      const int at_once = std::min(thread_count(threads), columns * rows);
+      const double turns_left = std::ceil(double(columns * rows - *i) / at_once);
+      for (std::uint32_t s = 0; s < pass.count && !stop.stop_requested(); s += samples_at_once) {
+        const double batches = std::ceil(double(pass.count - s) / samples_at_once);
+        trace_tile(scene, {pass.index, s, std::min(samples_at_once, pass.count - s)}, tile,
+                   share_of(patience, turns_left - 1 + batches));
+      }
       store(tile, film);
       counters[*i] = tile.counters;
     }
@@ -96,6 +111,13 @@ std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int thr
   for (const TraceCounters& c : counters) film.counters += c;
   film.cpu_seconds = cpu_seconds;
   return film;
+}
+
+Patience::Clock::time_point deadline_of(const TimeTarget& target,
+                                        Patience::Clock::time_point start) {
+  constexpr double longest = 1e9;  // seconds: what a clock can count
+  return start + std::chrono::duration_cast<Patience::Clock::duration>(
+                     std::chrono::duration<double>(std::clamp(target.seconds, 0.0, longest)));
 }
 
 bool meets(const Quality& quality, const Film& film, double seconds) {
@@ -137,6 +159,7 @@ RenderStats stats_of(const Scene& scene, const Film& film, double seconds, int t
   stats.threads = thread_count(threads);
   stats.relative_error = relative_error(film);
   stats.transport = transport_name(scene);
+  stats.camera_inside = scene.camera_inside;
   stats.nan_samples = film.counters.nan_samples;
   stats.truncated_energy =
       film.counters.camera_samples > 0
@@ -159,12 +182,14 @@ RenderResult render(const Scene& scene, const Quality& quality, int threads, std
   while (!meets(quality, result.film, seconds())) {
     const std::optional<Pass> pass = plan_pass(result.film.passes, pixels, total);
     if (!pass) break;
-    // A pass that overruns the time is given up; the first one always ends.
+    // A pass that overruns the time is given up; of the first one is kept what came in time.
     std::stop_source pass_stop;
     const std::stop_callback forward(stop, [&] { pass_stop.request_stop(); });
     std::optional<Deadline> deadline;
     if (budget && result.film.passes > 0) deadline.emplace(pass_stop, budget->seconds - seconds());
-    const std::optional<PassFilm> film = trace_pass(scene, *pass, threads, pass_stop.get_token());
+    Patience patience(pass_stop.get_token());
+    if (budget && result.film.passes == 0) patience.deadline = deadline_of(*budget, start);
+    const std::optional<PassFilm> film = trace_pass(scene, *pass, threads, patience);
     if (!film) {
       result.stopped = stop.stop_requested();
       break;
@@ -189,7 +214,7 @@ std::string explain_sample(const Scene& scene, int x, int y, std::uint32_t sampl
   tile.width = tile.height = 1;
   tile.sum.assign(pixel_floats * scene.film_lanes(), 0.0f);
   std::string log;
-  trace_tile(scene, {pass.index, sample - pass.first_sample, 1}, tile, &log);
+  trace_tile(scene, {pass.index, sample - pass.first_sample, 1}, tile, {}, &log);
   Rgb radiance;
   for (std::size_t lane = 0; lane < (scene.spread ? tile.sum.size() : 1); lane += pixel_floats)
     radiance += Rgb{tile.sum[lane], tile.sum[lane + 1], tile.sum[lane + 2]};

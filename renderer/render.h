@@ -13,6 +13,7 @@
 #include <string_view>
 #include <variant>
 
+#include "renderer/base/patience.h"
 #include "renderer/film/absorption.h"
 #include "renderer/film/explorable.h"
 #include "renderer/film/film.h"
@@ -32,7 +33,7 @@ struct ErrorTarget {
   friend bool operator==(const ErrorTarget&, const ErrorTarget&) = default;
 };
 struct TimeTarget {
-  double seconds = 10;  ///< wall clock of the tracing; the first pass always ends
+  double seconds = 10;  ///< wall clock of the tracing
   friend bool operator==(const TimeTarget&, const TimeTarget&) = default;
 };
 using Quality = std::variant<SampleTarget, ErrorTarget, TimeTarget>;
@@ -47,9 +48,14 @@ std::optional<Pass> plan_pass(std::uint32_t index, std::uint64_t pixels,
 std::string transport_name(const Scene& scene);
 
 /// Traces one pass on `threads` threads (0: all cores); the bits do not depend on their number.
-/// Empty if stopped before the end.
+/// Empty if stopped before the end; with a deadline every tile gets its share of the time, and the
+/// paths that take longer are given up (RenderStats::truncated_energy).
 std::optional<PassFilm> trace_pass(const Scene& scene, const Pass& pass, int threads,
-                                   std::stop_token stop = {});
+                                   const Patience& patience = {});
+
+/// When a time target is over that began at `start`.
+Patience::Clock::time_point deadline_of(const TimeTarget& target,
+                                        Patience::Clock::time_point start);
 
 /// True when the film meets the target. `seconds`: wall clock spent tracing so far.
 bool meets(const Quality& quality, const Film& film, double seconds);
@@ -74,6 +80,7 @@ struct RenderStats {
   int traced_images = 1;
   std::uint64_t nan_samples = 0;
   double truncated_energy = 0;  ///< mean per camera sample
+  bool camera_inside = false;   ///< the camera is in the body
 };
 
 struct RenderResult {

@@ -3,17 +3,21 @@
 # part of it. Layers: server -> api -> renderer -> picture.
 
 set(rooms
-  "picture: picture/exr picture/oiio"
+  "picture/sandbox:"
+  "picture: picture/exr picture/oiio picture/sandbox"
   "picture/exr: picture"
   "picture/oiio: picture"
+  "picture/light: picture picture/exr picture/oiio"
   "picture/sheet: picture"
 
   "renderer/base:"
-  "renderer/shape: renderer/base"
+  "renderer/shape: renderer/base renderer/shape/file"
+  "renderer/shape/file: renderer/shape renderer/base picture/sandbox"
+  "renderer/reader: renderer/shape/file picture picture/light picture/oiio picture/sandbox"
   "renderer/light: renderer/base picture"
   "renderer/optics: renderer/base renderer/light"
   "renderer/film: renderer/base renderer/optics picture"
-  "renderer/scene: renderer/base renderer/shape renderer/light renderer/optics renderer/film picture"
+  "renderer/scene: renderer/base renderer/shape renderer/shape/file renderer/light renderer/optics renderer/film picture"
   "renderer/transport: renderer/base renderer/shape renderer/light renderer/optics renderer/film renderer/scene renderer/transport/sphere"
   "renderer/transport/sphere: renderer/base renderer/light renderer/optics renderer/film renderer/transport"
   "renderer/transport/instances: renderer/transport"
@@ -38,30 +42,30 @@ set(rooms
 
 # What the headers named by a regular expression may not be included by, in a whole layer.
 set(layers picture renderer api server)
-set(forbidden_picture "^(nlohmann|spdlog|CLI)/|^httplib\\.h$|^sqlite3\\.h$|^(openssl|prometheus|hwy|embree[0-9]*|assimp|Eigen)/")
+set(forbidden_picture "^(nlohmann|spdlog|CLI)/|^httplib\\.h$|^sqlite3\\.h$|^(openssl|prometheus|hwy|embree[0-9]*|Eigen)/")
 set(forbidden_renderer "^(nlohmann|spdlog|CLI)/|^httplib\\.h$|^sqlite3\\.h$|^(openssl|prometheus)/|^(OpenImageIO|OpenColorIO|OpenEXR|Imath)/")
-set(forbidden_api "^(spdlog|CLI)/|^httplib\\.h$|^sqlite3\\.h$|^(openssl|prometheus|hwy|assimp|Eigen)/|^(embree[0-9]*|OpenImageIO|OpenColorIO|OpenEXR|Imath)/")
-set(forbidden_server "^(embree[0-9]*|OpenImageIO|OpenColorIO|OpenEXR|Imath|hwy|assimp|Eigen)/")
+set(forbidden_api "^(spdlog|CLI)/|^httplib\\.h$|^sqlite3\\.h$|^(openssl|prometheus|hwy|Eigen)/|^(embree[0-9]*|OpenImageIO|OpenColorIO|OpenEXR|Imath)/")
+set(forbidden_server "^httplib\\.h$|^(embree[0-9]*|OpenImageIO|OpenColorIO|OpenEXR|Imath|hwy|Eigen)/")
 
 # Doors: the header, and the file that may include it, or the files of that name (a regular expression).
-set(doors Embree assimp OpenEXR OpenImageIO OpenColorIO FreeType httplib SQLite OpenSSL prometheus)
+set(doors Embree OpenEXR OpenImageIO OpenColorIO LittleCMS seccomp FreeType SQLite OpenSSL prometheus)
 set(header_Embree "^embree[0-9]*/")
-set(header_assimp "^assimp/")
 set(header_OpenEXR "^(OpenEXR|Imath)/|^picture/exr/file\\.h$")
 set(header_OpenImageIO "^OpenImageIO/|^picture/oiio/file\\.h$")
 set(header_OpenColorIO "^OpenColorIO/")
+set(header_LittleCMS "^lcms2\\.h$")
+set(header_seccomp "^seccomp\\.h$")
 set(header_FreeType "^ft2build\\.h$|^freetype/")
-set(header_httplib "^httplib\\.h$|^server/http/(exchange|socket_server)\\.h$")
 set(header_SQLite "^sqlite3\\.h$")
 set(header_OpenSSL "^openssl/")
 set(header_prometheus "^prometheus/")
 set(door_Embree "renderer/shape/embree_mesh.cpp")
-set(door_assimp "renderer/shape/triangle_mesh.cpp")
 set(door_OpenEXR "picture/exr/[a-z_]+.(cpp|h)")
 set(door_OpenImageIO "picture/oiio/[a-z_]+.(cpp|h)")
 set(door_OpenColorIO "picture/color.cpp")
+set(door_LittleCMS "picture/light/icc.cpp")
+set(door_seccomp "picture/sandbox/confine.cpp")
 set(door_FreeType "picture/sheet/text.cpp")
-set(door_httplib "server/http/(server|exchange|socket_server).(cpp|h)")
 set(door_SQLite "server/store/sqlite/connection.cpp")
 set(door_OpenSSL "server/(base/sha256|calls/tokens).cpp")
 set(door_prometheus "server/base/metrics.cpp")

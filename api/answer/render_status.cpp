@@ -57,7 +57,8 @@ std::string stats_json(const RenderStats& stats) {
               {"transport", stats.transport},
               {"traced_images", stats.traced_images},
               {"nan_samples", stats.nan_samples},
-              {"truncated_energy", finite_or_null(stats.truncated_energy)}}
+              {"truncated_energy", finite_or_null(stats.truncated_energy)},
+              {"camera_inside", stats.camera_inside}}
       .dump();
 }
 

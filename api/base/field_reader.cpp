@@ -69,6 +69,14 @@ std::optional<std::uint64_t> FieldReader::integer(std::string_view key, std::uin
     const auto number = value->get<std::uint64_t>();
     if (number >= low && number <= high) return number;
   }
+  // 1.0 and 1e0 are integers too (JSON Schema 2020-12, validation 6.1.1).
+  if (value->is_number_float()) {
+    const auto number = value->get<double>();
+    if (number == std::floor(number) && number >= 0 && number < 0x1p64) {
+      const auto whole = static_cast<std::uint64_t>(number);
+      if (whole >= low && whole <= high) return whole;
+    }
+  }
   fault(key, "must be an integer from " + std::to_string(low) + " to " + std::to_string(high));
   return std::nullopt;
 }

@@ -28,6 +28,10 @@ enum class ProblemCode {
   not_found,
   gone,  // removed to make room
   method_not_allowed,
+  not_implemented,  // a method or a transfer coding that the service has not
+  version_not_supported,
+  expectation_failed,
+  precondition_failed,  // If-Match or If-None-Match
   not_acceptable,
   request_timeout,  // the head of the request did not come in time
   conflict,         // the state does not allow it (image of a failed render, ...)

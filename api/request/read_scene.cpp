@@ -39,13 +39,8 @@ void read_environment(const json& value, const std::string& pointer, const Catal
   environment.refuse_unknown_keys();
 }
 
-/// v / |v|, or zero for zero, without overflow or underflow on the way.
-Vec3 direction(Vec3 v) {
-  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  if (largest == 0) return {};
-  const Vec3 scaled{v.x / largest, v.y / largest, v.z / largest};
-  return normalize(scaled);
-}
+/// v / |v|, or zero for zero.
+Vec3 direction(Vec3 v) { return v == Vec3{} ? v : direction_of(v); }
 
 void read_camera(const json& value, const std::string& pointer, CameraRequest& out,
                  Faults& faults) {

@@ -5,17 +5,22 @@
 // when a file first needs it: a picture that is not EXR.
 
 #include <filesystem>
+#include <span>
 
 #include "picture/image_io.h"
+#include "picture/stored_picture.h"
 
 namespace translucube {
 
-/// What the module can do: what image_io.h declares, but for the checks of sizes and pixels.
+/// What the module can do: what image_io.h declares, but for the checks of sizes and pixels, and
+/// what the pictures of strangers hold (oiio/stored.h).
 struct ImageCodecs {
   Image (*read)(const std::filesystem::path& file);
   ImageMetadata (*read_metadata)(const std::filesystem::path& file);
   void (*write)(const std::filesystem::path& file, const Image& image, ImageFormat format,
                 const ImageMetadata& metadata);
+  void (*prepare_stored)();
+  StoredPicture (*read_stored)(std::span<const char> bytes, LightFormat format);
 };
 
 /// The name under which the module exports its `const ImageCodecs`.

@@ -11,15 +11,6 @@
 namespace translucube {
 namespace {
 
-/// The threads belong to the renders: OpenImageIO and OpenEXR decode on the calling one.
-void use_one_thread() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    OIIO::attribute("threads", 1);
-    OIIO::attribute("exr_threads", 1);
-  });
-}
-
 /// A file as OpenImageIO's codecs write it: one place after the other, but for those that they turn
 /// back to.
 class FileProxy final : public OIIO::Filesystem::IOProxy {
@@ -50,6 +41,14 @@ class FileProxy final : public OIIO::Filesystem::IOProxy {
 };
 
 }  // namespace
+
+void use_one_thread() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", 1);
+  });
+}
 
 std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file) {
   use_one_thread();

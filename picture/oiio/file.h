@@ -13,6 +13,9 @@
 
 namespace translucube {
 
+/// The threads belong to the renders: OpenImageIO and OpenEXR decode on the calling one.
+void use_one_thread();
+
 /// Throws ImageError.
 std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file);
 

@@ -7,22 +7,12 @@
 
 #include "picture/oiio/codecs.h"
 #include "picture/oiio/file.h"
+#include "picture/oiio/metadata.h"
+#include "picture/oiio/stored.h"
 #include "picture/version.h"
 
 namespace translucube {
 namespace {
-
-// Of PNG, TIFF and JPEG only "ImageDescription" and "Software" survive in all three. The latter is
-// "Translucube <version>, pixels in <colour space>".
-constexpr std::string_view program = "Translucube ", pixels_in = ", pixels in ";
-
-ImageMetadata metadata_of(const OIIO::ImageSpec& spec) {
-  const std::string_view writer = spec.get_string_attribute("Software");
-  const std::size_t end = writer.find(pixels_in);
-  if (!writer.starts_with(program) || end == writer.npos) return {};
-  return {.request = std::string(spec.get_string_attribute("ImageDescription")),
-          .colorspace = std::string(writer.substr(end + pixels_in.size()))};
-}
 
 /// Undoes the transfer curve that the file names. OpenImageIO names sRGB for PNG and JPEG that say
 /// nothing, and none for EXR, HDR and untagged TIFF; our own files say more than it can.
@@ -116,4 +106,5 @@ void write_picture(const std::filesystem::path& file, const Image& image, ImageF
 }  // namespace translucube
 
 extern "C" const translucube::ImageCodecs translucube_image_codecs = {
-    translucube::read_picture, translucube::read_picture_metadata, translucube::write_picture};
+    translucube::read_picture, translucube::read_picture_metadata, translucube::write_picture,
+    translucube::prepare_stored, translucube::read_stored};

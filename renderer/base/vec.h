@@ -29,6 +29,15 @@ constexpr double length_squared(Vec3 a) { return dot(a, a); }
 inline double length(Vec3 a) { return std::sqrt(length_squared(a)); }
 inline Vec3 normalize(Vec3 a) { return a * (1.0 / length(a)); }
 
+/// v / |v| of any length that is not zero: the exponents first, so that no square overflows or
+/// vanishes. Of what normalize() can do, to the bit the same.
+inline Vec3 direction_of(Vec3 v) {
+  const double largest = std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
+  const int exponent = std::ilogb(largest);
+  return normalize(
+      {std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent), std::scalbn(v.z, -exponent)});
+}
+
 /// Linear RGB (Rec.709 primaries, D65 white), any scale, never clamped.
 struct Rgb {
   float r = 0, g = 0, b = 0;

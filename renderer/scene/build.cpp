@@ -5,6 +5,7 @@
 #include "picture/image_io.h"
 #include "renderer/light/environment_cache.h"
 #include "renderer/scene/scene.h"
+#include "renderer/shape/file/mesh_file.h"
 #include "renderer/shape/mesh.h"
 
 namespace translucube {
@@ -21,8 +22,7 @@ PlacedShape make_shape(const SphereObject& sphere) { return {Sphere{}, {}, spher
 
 PlacedShape make_shape(const MeshObject& object) {
   try {
-    TriangleMesh mesh = read_mesh(object.file);
-    close_mesh(mesh);
+    const TriangleMesh mesh = read_mesh(object.file);
     const BuiltMesh built = build_mesh(mesh);
     const double back =
         std::ranges::min(mesh.vertices, {}, [](Vec3 v) { return v.z; }).z - built.center.z;
@@ -78,10 +78,20 @@ Environment make_environment(const EnvironmentSpec& spec, EnvironmentSide side,
     return UniformEnvironment{constant->radiance * static_cast<float>(spec.scale)};
   try {
     return *cache.get(std::get<ImageEnvironmentSpec>(spec.source).file,
-                      spec.rotation_deg * std::numbers::pi / 180, spec.scale, side);
+                      std::fmod(spec.rotation_deg, 360) * std::numbers::pi / 180, spec.scale,
+                      side);
   } catch (const ImageError& error) {
     throw SceneError(SceneError::Part::environment, error.what());
   }
+}
+
+Camera make_camera(const SceneSpec& spec, Vec3 position, Vec3 target) {
+  const Camera camera(position, target, spec.camera.up, spec.camera.vfov_deg, spec.width,
+                      spec.height);
+  if (!std::isfinite(length_squared(camera.forward) + length_squared(camera.right)))
+    throw SceneError(SceneError::Part::camera,
+                     "its position and target are one point as far away as they are");
+  return camera;
 }
 
 /// The least absorption that is developed from one tracing: a body that it leaves open is traced
@@ -118,8 +128,7 @@ void use_dipole(const DipoleModel& model, const SceneSpec& spec, Scene& scene) {
 
 void check_mesh(const std::filesystem::path& file) {
   try {
-    TriangleMesh mesh = read_mesh(file);
-    close_mesh(mesh);
+    read_mesh(file);
   } catch (const MeshError& error) {
     throw SceneError(SceneError::Part::object, error.what());
   }
@@ -147,8 +156,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   scene->environment = make_environment(
       spec.environment, spec.backdrop ? EnvironmentSide::front : EnvironmentSide::all,
       environments ? *environments : own);
-  scene->camera = Camera(to_body(spec.camera.position_mm), to_body(spec.camera.target_mm),
-                         spec.camera.up, spec.camera.vfov_deg, spec.width, spec.height);
+  scene->camera = make_camera(spec, to_body(spec.camera.position_mm), to_body(spec.camera.target_mm));
   scene->camera_inside =
       std::visit([&](const auto& s) { return s.inside(scene->camera.position); }, scene->shape);
   if (scene->backdrop && scene->camera.position.z <= scene->backdrop->z)

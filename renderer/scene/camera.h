@@ -15,10 +15,11 @@ struct Camera {
   int width = 1, height = 1;
 
   Camera() = default;
+  /// `up_`: of any length, not along the view.
   Camera(Vec3 position_, Vec3 target, Vec3 up_, double vfov_deg, int width_, int height_)
       : position(position_), width(width_), height(height_) {
-    forward = normalize(target - position);
-    right = normalize(cross(forward, up_));
+    forward = direction_of(target - position);
+    right = direction_of(cross(forward, direction_of(up_)));
     up = cross(right, forward);
     tan_half = std::tan(vfov_deg * std::numbers::pi / 360);
   }

@@ -1,15 +1,14 @@
 #include "renderer/shape/triangle_mesh.h"
 
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
 #include <algorithm>
-#include <assimp/Importer.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <tuple>
+
+#include "renderer/shape/mesh_parts.h"
 
 namespace translucube {
 namespace {
@@ -43,52 +42,30 @@ void check_closed(const TriangleMesh& mesh) {
   for (const Triangle& t : mesh.triangles)
     for (int i = 0; i < 3; ++i) edges.emplace_back(t[i], t[(i + 1) % 3]);
   std::ranges::sort(edges);
-  std::size_t open = 0, doubled = 0;
+  std::size_t open = 0, doubled = 0, first_open = 0, first_doubled = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (i > 0 && edges[i] == edges[i - 1]) ++doubled;
-    if (!std::ranges::binary_search(edges, std::pair(edges[i].second, edges[i].first))) ++open;
+    if (i > 0 && edges[i] == edges[i - 1] && doubled++ == 0) first_doubled = i;
+    if (!std::ranges::binary_search(edges, std::pair(edges[i].second, edges[i].first)) &&
+        open++ == 0)
+      first_open = i;
   }
+  const auto example = [&](std::size_t edge) {
+    std::ostringstream text;
+    const Vec3 a = mesh.vertices[edges[edge].first], b = mesh.vertices[edges[edge].second];
+    text << ", as that from " << a.x << " " << a.y << " " << a.z << " to " << b.x << " " << b.y
+         << " " << b.z;
+    return text.str();
+  };
   if (open > 0)
     throw MeshError("the mesh is not closed: " + std::to_string(open) + " of its " +
-                    std::to_string(edges.size()) + " half-edges have no partner");
+                    std::to_string(edges.size()) + " half-edges have no partner" +
+                    example(first_open));
   if (doubled > 0)
     throw MeshError("the mesh is not a closed surface: " + std::to_string(doubled) +
-                    " edges are shared by more than two triangles");
+                    " edges are shared by more than two triangles" + example(first_doubled));
 }
 
 }  // namespace
-
-TriangleMesh read_mesh(const std::filesystem::path& file) {
-  Assimp::Importer importer;
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return std::tolower(c); });
-  if (extension != ".obj" && extension != ".ply")
-    throw MeshError("a mesh must be an .obj or .ply file");
-  // Keep only positions and faces: materials of a file may name other files.
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, ~(aiComponent_MESHES)&0xfff);
-  const aiScene* scene =
-      importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_RemoveComponent |
-                                           aiProcess_PreTransformVertices);
-  if (scene == nullptr) throw MeshError("the mesh cannot be read");
-  TriangleMesh mesh;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    const aiMesh& part = *scene->mMeshes[m];
-    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (unsigned v = 0; v < part.mNumVertices; ++v) {
-      const aiVector3D& p = part.mVertices[v];
-      mesh.vertices.push_back({p.x, p.y, p.z});
-    }
-    for (unsigned f = 0; f < part.mNumFaces; ++f) {
-      const aiFace& face = part.mFaces[f];
-      if (face.mNumIndices == 3)
-        mesh.triangles.push_back(
-            {base + face.mIndices[0], base + face.mIndices[1], base + face.mIndices[2]});
-    }
-  }
-  if (mesh.triangles.empty()) throw MeshError("the mesh has no triangle");
-  return mesh;
-}
 
 void close_mesh(TriangleMesh& mesh) {
   for (const Vec3& v : mesh.vertices)
@@ -99,10 +76,7 @@ void close_mesh(TriangleMesh& mesh) {
                 [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   if (mesh.triangles.empty()) throw MeshError("the mesh has no triangle");
   check_closed(mesh);
-  const double v = volume(mesh);
-  if (v == 0) throw MeshError("the mesh encloses no volume");
-  if (v < 0)
-    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  unite_parts(mesh);
 }
 
 double volume(const TriangleMesh& mesh) {

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <stdexcept>
 #include <vector>
 
@@ -22,12 +21,9 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;
 };
 
-/// Reads an OBJ or PLY file (assimp). Throws MeshError if it cannot be read or has no triangle.
-TriangleMesh read_mesh(const std::filesystem::path& file);
-
-/// Merges equal vertices, drops triangles without area, and turns the mesh outside out if its
-/// volume is negative. Throws MeshError if it is empty, not finite, or not closed: every edge must
-/// be shared by two triangles that run along it in opposite directions.
+/// Merges equal vertices, drops triangles without area, and unites the parts to the boundary of one
+/// body, seen from outside (mesh_parts.h). Throws MeshError if it is empty, not finite, or not
+/// closed: every edge must be shared by two triangles that run along it in opposite directions.
 void close_mesh(TriangleMesh& mesh);
 
 /// Signed volume (divergence theorem); > 0 if the normals point outward.

@@ -56,7 +56,7 @@ void Tracer<Body>::go_in(Path& path) {
   if constexpr (Body::smooth && Body::inside.open) {
     follow_unscattered(path);
   } else {
-    path.roulette = (straight ? roulette_of_rough : roulette_of_scattered) * path.weight;
+    path.play_below(straight ? roulette_of_rough : roulette_of_scattered);
     walking_.push_back(path);
   }
 }

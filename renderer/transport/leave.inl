@@ -72,9 +72,12 @@ void Tracer<Body>::go_out(Path& from, Vec3 direction, double weight, double pdf)
 
 template <class Body>
 void Tracer<Body>::go_back(Path& path) {
+  ++path.arrivals;
+  if (path.arrivals > returns_before_floor)
+    path.roulette = std::max(path.roulette, roulette_of_returned);
   // A model that gains energy has no answer in deep cavities: the branches must not multiply.
   if constexpr (Body::inside.dipole) {
-    if (++path.arrivals > 2) path.roulette = 1;
+    if (path.arrivals > 2) path.roulette = 1;
     if (path.arrivals > dipole_arrival_cap) return collector_.give_up(path);
   }
   if (path.survives()) entering_.push_back(path);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "renderer/transport/walk.h"
@@ -13,6 +14,13 @@ inline constexpr double roulette_of_clear = 1.0 / 64;
 inline constexpr double roulette_of_scattered = 1.0 / 4;
 /// The threshold inside a clear body under a rough interface, relative to the weight that went in.
 inline constexpr double roulette_of_rough = 1.0 / 8;
+
+/// Each time that light comes back to the body (from a print, or across a hollow) its threshold
+/// begins anew, relative to what is left, and both branches are followed once more: where nothing
+/// absorbs, that multiplies paths without end. After so many returns the threshold is at least this
+/// one, of what the camera saw.
+inline constexpr std::uint32_t returns_before_floor = 4;
+inline constexpr double roulette_of_returned = 1.0 / 16;
 
 /// A light path on its way back from the camera: an achromatic weight and a length inside the body.
 struct Path : Particle {
@@ -41,11 +49,17 @@ struct Path : Particle {
   std::uint32_t pixel = 0, events = 0;
   std::uint32_t start = 0;     ///< of its walk, among those that the connector knows
   std::uint32_t tint = 0;      ///< in the dipole model, the colour so far
-  std::uint32_t arrivals = 0;  ///< in the dipole model, times back at the body from outside
+  std::uint32_t arrivals = 0;  ///< times back at the body from outside
   PathSampler sampler;
 
   /// In the unit sphere a point of the boundary is its own normal, to the bit.
   bool on_unit_sphere() const { return p == n; }
+
+  /// Sets the threshold to a share of the weight.
+  void play_below(double share) {
+    roulette = share * weight;
+    if (arrivals > returns_before_floor) roulette = std::max(roulette, roulette_of_returned);
+  }
 
   /// Russian roulette; unbiased: the weight lost to those that end is given to those that survive.
   bool survives() {

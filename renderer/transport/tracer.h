@@ -99,13 +99,15 @@ class Tracer {
   using Connector = typename Body::Connector;
 
  public:
-  Tracer(const Scene& scene, const Body& body, Tile& tile, std::uint64_t key, std::string* log)
+  Tracer(const Scene& scene, const Body& body, Tile& tile, std::uint64_t key,
+         const Patience& patience, std::string* log)
       : scene_(scene),
         shape_(body.shape),
         interface_(body.interface),
         interior_(body.interior),
         tile_(tile),
         collector_(scene, tile, log),
+        patience_(patience),
         lights_(lights_of(scene, key)),
         may_come_back_(!shape_.convex() ||
                        (scene.backdrop && scene.backdrop->kind == BackdropKind::print)),
@@ -241,9 +243,16 @@ class Tracer {
     return Body::smooth || (scene_.oiled && scene_.oiled->covers(path.p));
   }
 
+  /// Whether the time is over, once asked in `every` (a power of two) calls.
+  bool out_of_time(std::uint32_t every) {
+    if ((++asked_ & (every - 1)) == 0 && patience_.over()) over_ = true;
+    return over_;
+  }
+
   bool count_event(Path& path) {
     ++tile_.counters.boundary_events;
-    if (++path.events < (Body::inside.scatters ? scattering_event_cap : clear_event_cap))
+    if (!out_of_time(64) &&
+        ++path.events < (Body::inside.scatters ? scattering_event_cap : clear_event_cap))
       return true;
     collector_.give_up(path);
     return false;
@@ -255,6 +264,9 @@ class Tracer {
   const typename Body::Interior& interior_;
   Tile& tile_;
   Collector collector_;
+  const Patience& patience_;
+  std::uint32_t asked_ = 0;
+  bool over_ = false;   ///< all paths are given up
   LightList lights_;    ///< for microfacets
   bool may_come_back_;  ///< whether what leaves may arrive again
   Connector connector_;
@@ -275,10 +287,11 @@ inline std::uint64_t shared_key(const Scene& scene, const SampleRange& samples, 
 
 template <class Shape>
 void trace_body(const Shape& shape, const Scene& scene, const SampleRange& samples, Tile& tile,
-                std::string* log) {
+                const Patience& patience, std::string* log) {
   std::visit(
       [&](const auto& interface, const auto& interior) {
-        Tracer(scene, Body{shape, interface, interior}, tile, shared_key(scene, samples, tile), log)
+        Tracer(scene, Body{shape, interface, interior}, tile, shared_key(scene, samples, tile),
+               patience, log)
             .run(samples);
       },
       scene.interface, scene.interior);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/base/patience.h"
 #include "renderer/film/contribution_batch.h"
 #include "renderer/film/film.h"
 #include "renderer/scene/scene.h"
@@ -39,12 +40,14 @@ struct Tile {
 
 template <class Shape>
 void trace_body(const Shape& shape, const Scene& scene, const SampleRange& samples, Tile& tile,
-                std::string* log);
+                const Patience& patience, std::string* log);
 
-/// Adds the samples to the tile. `log`, where given, receives a line for every event.
+/// Adds the samples to the tile, as far as they come before the patience is over. `log`, where
+/// given, receives a line for every event.
 inline void trace_tile(const Scene& scene, const SampleRange& samples, Tile& tile,
-                       std::string* log = nullptr) {
-  std::visit([&](const auto& shape) { trace_body(shape, scene, samples, tile, log); }, scene.shape);
+                       const Patience& patience, std::string* log = nullptr) {
+  std::visit([&](const auto& shape) { trace_body(shape, scene, samples, tile, patience, log); },
+             scene.shape);
 }
 
 }  // namespace translucube

@@ -29,6 +29,10 @@ void Tracer<Body>::walk_together() {
   for (std::size_t first = 0; first < walking_.size(); first += SphereWalk::capacity) {
     const std::span<Path> paths(&walking_[first],
                                 std::min(SphereWalk::capacity, walking_.size() - first));
+    if (out_of_time(1)) {
+      for (const Path& path : paths) collector_.give_up(path);
+      continue;
+    }
     for (std::size_t i = 0; i < paths.size(); ++i) {
       Path& path = paths[i];
       const double depth2 = path.on_unit_sphere() ? 0 : std::fmax(0.0, 1 - length_squared(path.p));
@@ -40,6 +44,8 @@ void Tracer<Body>::walk_together() {
       sphere_walk_.advance(medium);
       connector_.connect(sphere_walk_.vertices(), paths);
       arrive(sphere_walk_.arrivals(), paths);
+      if (out_of_time(8))
+        sphere_walk_.abandon([&](std::uint32_t slot) { collector_.give_up(paths[slot]); });
     }
   }
 }
@@ -61,13 +67,14 @@ void Tracer<Body>::arrive(const SphereWalk::Arrivals& arrivals, std::span<const 
 template <class Body>
 bool Tracer<Body>::walk_alone(Path& path, Hit& hit) {
   Rng& rng = path.sampler.rng();
+  if (over_) return false;
   if constexpr (Body::inside.scatters) {
     return walk_to_boundary(shape_, interior_.medium, path, rng, hit);
   } else if constexpr (Body::inside.half_space) {
     // In the half space below the point where it entered, to leave at that very point.
     const Frame frame(path.n);
     Particle below{{}, frame.to_local(path.d), path.length};
-    walk_to_boundary(HalfSpace{}, interior_.medium, below, rng, hit);
+    if (!walk_to_boundary(HalfSpace{}, interior_.medium, below, rng, hit)) return false;
     path.d = frame.to_world(below.d);
     path.length = below.length;
     hit.p = path.p;
@@ -86,7 +93,7 @@ bool Tracer<Body>::walk_to_boundary(const Place& place, const Medium& medium, Pa
   ++tile_.counters.flights;
   while (fly(around, medium, particle, rng, hit)) {
     ++tile_.counters.flights;
-    if (strayed(place, particle)) return false;
+    if (strayed(place, particle) || out_of_time(256)) return false;
     scatter(around, medium, particle, rng);
   }
   return true;
@@ -144,7 +151,7 @@ void Tracer<Body>::start_walks(const Path& scattered, double weight, PathSampler
     // Its own numbers from here on: those that it was copied with have decided over others since.
     path.sampler = sampler.split();
     if (!path.survives()) continue;
-    path.roulette = roulette_of_scattered * path.weight;
+    path.play_below(roulette_of_scattered);
     collector_.note("scatter", path);
     connector_.start(path);
     collide(path);

@@ -38,6 +38,7 @@ struct ServerConfig {
   int drain_s = 5;  ///< for passes under way, once the service is told to end
 
   std::uint64_t queue_length = 20'000;  ///< renders and images of sweeps
+  int open_pictures = 256;          ///< files held open for those who ask again; no key of the file
   double interactive_seconds = 10;  ///< a render that is traced for longer waits with the sweeps
   std::uint64_t artifact_bytes = std::uint64_t{20} << 30;  ///< of finished pictures on the disk
 

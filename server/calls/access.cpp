@@ -76,8 +76,10 @@ AccessPolicy access_policy(const ServerConfig& config) {
   return policy;
 }
 
+bool is_probe(std::string_view path) { return path == "/livez" || path == "/readyz"; }
+
 Result<Admitted> admit(const AccessPolicy& policy, const HttpRequest& request) {
-  if (request.path == "/livez" || request.path == "/readyz") return Admitted{};
+  if (is_probe(request.path)) return Admitted{};
   if (!is_our_host(policy, request.header("host")))
     return Problem{ProblemCode::misdirected,
                    "The Host header names another host; server.hosts can allow it.",

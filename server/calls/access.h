@@ -28,6 +28,9 @@ AccessPolicy access_policy(const ServerConfig& config);
 /// True for the addresses that only this machine can connect to: 127.0.0.0/8, ::1, localhost.
 bool is_loopback(std::string_view host);
 
+/// /livez and /readyz, which whoever watches the service asks for.
+bool is_probe(std::string_view path);
+
 struct Admitted {
   std::string client;  ///< the token's name, "" where none was needed
 };

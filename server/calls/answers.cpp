@@ -8,16 +8,14 @@ HttpResponse json_response(int status, std::string body) {
   return {status, {}, "application/json", std::move(body)};
 }
 
-HttpResponse tagged_json(const HttpRequest& request, const std::string& body) {
-  return tagged_json(request, body, '"' + content_hash(body) + '"');
+HttpResponse tagged_json(std::string body) {
+  std::string etag = '"' + content_hash(body) + '"';
+  return tagged_json(std::move(body), std::move(etag));
 }
 
-HttpResponse tagged_json(const HttpRequest& request, const std::string& body,
-                         const std::string& etag) {
-  HttpResponse response = etag_matches(request.header("if-none-match"), etag)
-                              ? HttpResponse{304, {}, {}, {}}
-                              : json_response(200, body);
-  response.headers = {{"ETag", etag}, {"Cache-Control", "no-cache"}};
+HttpResponse tagged_json(std::string body, std::string etag) {
+  HttpResponse response = json_response(200, std::move(body));
+  response.headers = {{"ETag", std::move(etag)}, {"Cache-Control", "no-cache"}};
   return response;
 }
 

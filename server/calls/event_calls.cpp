@@ -78,17 +78,14 @@ HttpResponse stream_of(CallContext& context, const HttpRequest& request, EventsA
   if (!found) return problem_response(found.problem());
   // Nothing will come: with 204 a browser does not connect again.
   if (found->ended && found->events.empty()) return {204, {}, {}, {}};
-  if (request.method == "HEAD") return {200, {}, "text/event-stream", {}};
+  if (request.method == "HEAD") return {200, {}, "text/event-stream", EventStream{}};
   Places::Place place = context.streams.take();
   if (!place)
     return problem_response(
         {ProblemCode::overloaded, "There are as many event streams as the service can feed.", {}});
   const auto stream = std::make_shared<Stream>(Stream{
       context.service, std::move(events_after), std::move(samples_to_see), std::move(place), last});
-  HttpResponse response{
-      200, {}, "text/event-stream", EventStream{[stream] { return stream->next(); }}};
-  response.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
-  return response;
+  return {200, {}, "text/event-stream", EventStream{[stream] { return stream->next(); }}};
 }
 
 }  // namespace

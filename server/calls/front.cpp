@@ -1,5 +1,7 @@
 #include "server/calls/front.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "server/base/log.h"
@@ -11,6 +13,14 @@ namespace {
 using api::ProblemCode;
 
 constexpr std::string_view metrics_path = "/metrics";
+
+/// Few, whatever clients send.
+std::string_view method_label(std::string_view method) {
+  constexpr std::array<std::string_view, 7> known{"GET",    "HEAD",  "POST",   "PUT",
+                                                  "DELETE", "PATCH", "OPTIONS"};
+  if (method.empty()) return "none";
+  return std::ranges::find(known, method) == known.end() ? "other" : method;
+}
 
 }  // namespace
 
@@ -25,6 +35,10 @@ Front::Front(AccessPolicy policy, Metrics& metrics, Respond respond)
 HttpHandlers Front::handlers() {
   return {[this](HttpRequest& request) { return admit(request); },
           [this](const HttpRequest& request) { return respond(request); },
+          // Metrics too: they are looked at when there is too much to do.
+          [](const HttpRequest& request) {
+            return is_probe(request.path) || request.path == metrics_path;
+          },
           [this](const RequestRecord& record) { done(record); }};
 }
 
@@ -48,17 +62,21 @@ HttpResponse Front::respond(const HttpRequest& request) const {
 HttpResponse Front::metrics_response(const HttpRequest& request) const {
   if (request.method != "GET" && request.method != "HEAD") {
     HttpResponse response =
-        problem_response({ProblemCode::method_not_allowed, "Allowed here: GET, HEAD", {}});
+        request.method == "OPTIONS"
+            ? HttpResponse{204, {}, {}, {}}
+            : problem_response({ProblemCode::method_not_allowed, "Allowed here: GET, HEAD", {}});
     response.headers.emplace_back("Allow", "GET, HEAD");
     return response;
   }
+  const Places::Place scrape = scrapes_.take();
+  if (!scrape)
+    return problem_response({ProblemCode::overloaded, "Too many ask for the metrics.", {}});
   return {200, {{"Cache-Control", "no-store"}}, Metrics::content_type, metrics_.text()};
 }
 
 void Front::done(const RequestRecord& record) const {
   const std::string_view route = route_of(record.path);
-  metrics_.count_request(record.method.empty() ? "none" : record.method, route, record.status,
-                         record.seconds);
+  metrics_.count_request(method_label(record.method), route, record.status, record.seconds);
   LogFields fields{{"id", record.id},
                    {"method", record.method},
                    {"path", record.path},

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "server/base/metrics.h"
+#include "server/base/places.h"
 #include "server/calls/access.h"
 #include "server/http/server.h"
 
@@ -28,6 +29,7 @@ class Front {
   const AccessPolicy policy_;
   Metrics& metrics_;
   const Respond respond_;
+  mutable Places scrapes_{4};  ///< of the metrics, at once
 };
 
 /// The pattern of a path (/v1/renders/{id}/image) for log and metrics, "other" if it has none: a

@@ -79,10 +79,7 @@ HttpResponse image_response(const HttpRequest& request, Find&& find) {
   if (!query) return problem_response(query.problem());
   const auto result = find(*query);
   if (!result) return problem_response(result.problem());
-  const auto& image = *result;
-  if (etag_matches(request.header("if-none-match"), image.etag))
-    return with_headers_of(image, {304, {}, {}, {}});
-  return with_headers_of(image, body_response(request, image));
+  return with_headers_of(*result, body_response(request, *result));
 }
 
 }  // namespace

@@ -4,26 +4,24 @@
 
 namespace translucube::server {
 
-HttpResponse get_absorbers(CallContext& context, const HttpRequest& request,
-                           const PathParameters&) {
-  return tagged_json(request, api::absorbers_json(context.catalog));
+HttpResponse get_absorbers(CallContext& context, const HttpRequest&, const PathParameters&) {
+  return tagged_json(api::absorbers_json(context.catalog));
 }
 
-HttpResponse get_environments(CallContext& context, const HttpRequest& request,
-                              const PathParameters&) {
-  return tagged_json(request, api::environments_json(context.catalog));
+HttpResponse get_environments(CallContext& context, const HttpRequest&, const PathParameters&) {
+  return tagged_json(api::environments_json(context.catalog));
 }
 
-HttpResponse get_objects(CallContext& context, const HttpRequest& request, const PathParameters&) {
-  return tagged_json(request, api::objects_json(context.catalog));
+HttpResponse get_objects(CallContext& context, const HttpRequest&, const PathParameters&) {
+  return tagged_json(api::objects_json(context.catalog));
 }
 
-HttpResponse get_displays(CallContext& context, const HttpRequest& request, const PathParameters&) {
-  return tagged_json(request, api::displays_json(context.colors.displays()));
+HttpResponse get_displays(CallContext& context, const HttpRequest&, const PathParameters&) {
+  return tagged_json(api::displays_json(context.colors.displays()));
 }
 
-HttpResponse get_openapi(CallContext&, const HttpRequest& request, const PathParameters&) {
-  return tagged_json(request, std::string(api::openapi_document()));
+HttpResponse get_openapi(CallContext&, const HttpRequest&, const PathParameters&) {
+  return tagged_json(std::string(api::openapi_document()));
 }
 
 }  // namespace translucube::server

@@ -24,7 +24,8 @@ HttpResponse post_render(CallContext& context, const HttpRequest& request, const
     const int seconds = std::min(*asked, longest_wait_s);
     bool waited = false;
     auto result = answer_after(
-        context, seconds, waited, [&] { return context.service.get(status.id); }, has_ended);
+        context, request, seconds, waited, [&] { return context.service.get(status.id); },
+        has_ended);
     if (!result) return problem_response(result.problem());
     status = *std::move(result);
     if (waited || seconds == 0) applied = "wait=" + std::to_string(seconds);
@@ -44,7 +45,9 @@ HttpResponse list_renders(CallContext& context, const HttpRequest& request, cons
 
 HttpResponse get_render(CallContext& context, const HttpRequest& request,
                         const PathParameters& path) {
-  return awaited_status(context, request, [&] { return context.service.tell(path.id); });
+  return awaited_status(
+      context, request, [&] { return context.service.tell(path.id); },
+      [&] { return context.service.moment(path.id); });
 }
 
 HttpResponse cancel_render(CallContext& context, const HttpRequest&, const PathParameters& path) {

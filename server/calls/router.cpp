@@ -6,6 +6,7 @@
 
 #include "api/base/faults.h"
 #include "server/base/ids.h"
+#include "server/calls/preconditions.h"
 
 namespace translucube::server {
 namespace {
@@ -91,6 +92,37 @@ std::vector<api::Fault> query_faults(const Route& route, const HttpRequest& requ
   return faults;
 }
 
+/// What GET answers for the resource that a request changes: a render, not the act of cancelling
+/// it.
+HttpResponse current(CallContext& context, std::string_view path) {
+  constexpr std::string_view act = "/cancel";
+  if (path.ends_with(act)) path.remove_suffix(act.size());
+  return respond(context, {"GET", std::string(path), {}, {}, {}});
+}
+
+HttpResponse carry_out(CallContext& context, const HttpRequest& request, const Route& route,
+                       const PathParameters& parameters) {
+  if (route.method == "GET")
+    return conditional(request, route.handle(context, request, parameters));
+  if (has_precondition(request))
+    if (auto unmet = unmet_precondition(request, current(context, request.path)))
+      return *std::move(unmet);
+  return route.handle(context, request, parameters);
+}
+
+/// Where no route has the method. "*" is the service as a whole (RFC 9110, 9.3.7).
+HttpResponse not_carried_out(std::string_view path, std::string_view method,
+                             const std::string& allowed) {
+  if (allowed.empty() && path != "*")
+    return problem_response({ProblemCode::not_found, "There is nothing at this path.", {}});
+  HttpResponse response =
+      method == "OPTIONS"
+          ? HttpResponse{204, {}, {}, {}}
+          : problem_response({ProblemCode::method_not_allowed, "Allowed here: " + allowed, {}});
+  response.headers.emplace_back("Allow", path == "*" ? "GET, HEAD, POST, DELETE" : allowed);
+  return response;
+}
+
 }  // namespace
 
 std::vector<Call> calls() {
@@ -124,16 +156,9 @@ HttpResponse respond(CallContext& context, const HttpRequest& request) {
     if (!faults.empty()) return problem_response(api::invalid_query(std::move(faults)));
     if (!parameters->id.empty() && !is_id(parameters->id))
       return problem_response({ProblemCode::not_found, "There is nothing of this id.", {}});
-    return route.handle(context, request, *parameters);
+    return carry_out(context, request, route, *parameters);
   }
-  if (allowed.empty())
-    return problem_response({ProblemCode::not_found, "There is nothing at this path.", {}});
-  HttpResponse response =
-      method == "OPTIONS"
-          ? HttpResponse{204, {}, {}, {}}
-          : problem_response({ProblemCode::method_not_allowed, "Allowed here: " + allowed, {}});
-  response.headers.emplace_back("Allow", allowed);
-  return response;
+  return not_carried_out(request.path, method, allowed);
 }
 
 }  // namespace translucube::server

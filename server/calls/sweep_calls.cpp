@@ -29,7 +29,9 @@ HttpResponse list_sweeps(CallContext& context, const HttpRequest& request, const
 
 HttpResponse get_sweep(CallContext& context, const HttpRequest& request,
                        const PathParameters& path) {
-  return awaited_status(context, request, [&] { return context.service.tell_sweep(path.id); });
+  return awaited_status(
+      context, request, [&] { return context.service.tell_sweep(path.id); },
+      [&] { return context.service.moment_of_sweep(path.id); });
 }
 
 HttpResponse cancel_sweep(CallContext& context, const HttpRequest&, const PathParameters& path) {

@@ -17,17 +17,15 @@ constexpr const char* content_security_policy =
     "default-src 'self'; img-src 'self' blob:; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'none'";
 
-HttpResponse web_response(const HttpRequest& request, std::string_view name) {
+HttpResponse web_response(std::string_view name) {
   const WebFile* file = find_web_file(name);
   if (file == nullptr)
     return problem_response({api::ProblemCode::not_found, "There is nothing at this path.", {}});
   const std::string etag = '"' + content_hash(file->bytes) + '"';
   HttpResponse response{200, {}, std::string(web_content_type(name)), std::string(file->bytes)};
-  if (etag_matches(request.header("if-none-match"), etag)) response = {304, {}, {}, {}};
   response.headers = {{"ETag", etag},
                       {"Cache-Control", "no-cache"},
                       {"Content-Security-Policy", content_security_policy},
-                      {"X-Content-Type-Options", "nosniff"},
                       {"Referrer-Policy", "no-referrer"}};
   return response;
 }
@@ -51,12 +49,12 @@ std::string_view web_content_type(std::string_view name) {
   return "application/octet-stream";
 }
 
-HttpResponse get_page(CallContext&, const HttpRequest& request, const PathParameters&) {
-  return web_response(request, "index.html");
+HttpResponse get_page(CallContext&, const HttpRequest&, const PathParameters&) {
+  return web_response("index.html");
 }
 
-HttpResponse get_web_file(CallContext&, const HttpRequest& request, const PathParameters& path) {
-  return web_response(request, path.file);
+HttpResponse get_web_file(CallContext&, const HttpRequest&, const PathParameters& path) {
+  return web_response(path.file);
 }
 
 }  // namespace translucube::server

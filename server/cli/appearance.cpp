@@ -1,17 +1,16 @@
 // Measures a flat slab of a material: its reflectance, transmittance and haze, as JSON.
 
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <memory>
 
 #include "api/answer/appearance_report.h"
 #include "api/request/appearance_request.h"
 #include "api/request/scene_spec.h"
-#include "server/base/file.h"
 #include "server/cli/command.h"
 #include "server/cli/config.h"
 #include "server/cli/input.h"
 #include "server/cli/options.h"
+#include "server/cli/output_files.h"
 #include "server/cli/verbs.h"
 
 namespace translucube::server {
@@ -29,21 +28,19 @@ int appearance_or_throw(const AppearanceOptions& options) {
   const api::Catalog catalog = command_line_catalog(options.setting.config);
   const api::AppearanceRequest request = accepted(api::parse_appearance_request(
       read_input(options.request, catalog.limits.body_bytes), catalog));
-  // The finished file takes the place of what is there: never of a device, a pipe, a folder.
-  if (options.output && fs::exists(*options.output) && !fs::is_regular_file(*options.output))
-    throw Refusal{exit_failure, options.output->string() + ": is not an ordinary file\n"};
+  OutputFiles files;
+  files.reads(options.request);
+  if (options.output) files.writes(*options.output);
   const Material material = scene_spec(render_request(request, catalog), catalog).material;
   const SlabAppearance appearance =
       slab_appearance(material, request.thickness_mm, request.standard_error, request.seed,
                       options.setting.threads);
   const std::string answer = appearance_json(request, appearance, catalog);
-  if (options.output) {
-    write_atomically(*options.output, answer);
-    return 0;
-  }
-  std::cout << answer << std::flush;
-  if (!std::cout) throw Refusal{exit_failure, "standard output cannot be written\n"};
-  return 0;
+  if (options.output)
+    files.write(*options.output, answer);
+  else
+    print(answer);
+  return files.status();
 }
 
 }  // namespace

@@ -47,7 +47,10 @@ Refusal refusal_of_options(const api::Problem& problem) {
 int develop_or_throw(const DevelopOptions& options) {
   const api::Catalog catalog = command_line_catalog(options.setting.config);
   const ColorConfig colors(catalog.display_config);
-  const std::vector<Output> outputs = checked_outputs(options.outputs, options.display, colors);
+  OutputFiles files;
+  files.reads(options.film);
+  const std::vector<Output> outputs =
+      checked_outputs(options.outputs, options.display, colors, files);
   const StoredExplorable stored = read_film(options.film);
   const auto made = api::redevelop(stored.request, {options.absorption, options.absorber}, catalog);
   if (!made) throw refusal_of_options(made.problem());
@@ -55,8 +58,8 @@ int develop_or_throw(const DevelopOptions& options) {
   write_outputs(outputs,
                 develop_explorable(stored.film, absorption.absorber, absorption.sigma_a_peak,
                                    options.setting.threads),
-                colors, request);
-  return 0;
+                colors, request, files);
+  return files.status();
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <iostream>
 
 #include "picture/image_io.h"
 #include "picture/version.h"
@@ -20,7 +21,10 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : exit_bad_request;
+    const int status = app.exit(error) == 0 ? 0 : exit_bad_request;
+    if (std::cout.flush()) return status;
+    std::cerr << "standard output cannot be written\n";
+    return exit_failure;
   }
   const auto given =
       std::ranges::find_if(verbs, [](const Verb& verb) { return verb.command->parsed(); });

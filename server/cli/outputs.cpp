@@ -1,30 +1,22 @@
 #include "server/cli/outputs.h"
 
-#include "server/base/file.h"
 #include "server/cli/command.h"
 
 namespace translucube::server {
 
 namespace fs = std::filesystem;
 
-void check_output_place(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder))
-    throw Refusal{exit_failure, folder.string() + ": there is no such folder\n"};
-  if (fs::exists(file) && !fs::is_regular_file(file))
-    throw Refusal{exit_failure, file.string() + ": is not an ordinary file\n"};
-}
-
-std::vector<Output> checked_outputs(const std::vector<fs::path>& files,
-                                    const DisplayChoice& display, const ColorConfig& colors) {
+std::vector<Output> checked_outputs(const std::vector<fs::path>& names,
+                                    const DisplayChoice& display, const ColorConfig& colors,
+                                    OutputFiles& files) {
   std::vector<Output> outputs;
   bool for_display = false;
-  for (const fs::path& file : files) {
+  for (const fs::path& file : names) {
     const auto format = format_of(file);
     if (!format)
       throw Refusal{exit_bad_request, file.string() + ": must end in " +
                                           list_formats(&ImageFormatRow::extension, " or ") + '\n'};
-    check_output_place(file);
+    files.writes(file);
     ImageQuery query{*format, {}, {}, {}};
     if (row_of(*format).library == ImageLibrary::open_image_io) prepare_image_codecs();
     if (!is_scene_linear(*format)) {
@@ -49,9 +41,10 @@ std::vector<Output> checked_outputs(const std::vector<fs::path>& files,
 }
 
 void write_outputs(const std::vector<Output>& outputs, const Image& picture,
-                   const ColorConfig& colors, const std::string& canonical_request) {
+                   const ColorConfig& colors, const std::string& canonical_request,
+                   OutputFiles& files) {
   for (const Output& output : outputs)
-    write_atomically(output.file, [&](const fs::path& temporary) {
+    files.write(output.file, [&](const fs::path& temporary) {
       write_form(temporary, picture, output.form, colors, canonical_request);
     });
 }

@@ -8,6 +8,7 @@
 
 #include "picture/color.h"
 #include "server/cli/options.h"
+#include "server/cli/output_files.h"
 #include "server/pictures/image_artifacts.h"
 
 namespace translucube::server {
@@ -17,15 +18,13 @@ struct Output {
   ImageForm form;
 };
 
-/// The finished file takes the place of what is there. Throws Refusal for a device, a pipe, a
-/// folder, or where there is no folder for it.
-void check_output_place(const std::filesystem::path& file);
-
-/// All that can be wrong with the outputs is told before the work begins. Throws Refusal.
-std::vector<Output> checked_outputs(const std::vector<std::filesystem::path>& files,
-                                    const DisplayChoice& display, const ColorConfig& colors);
+/// The outputs, which `files` writes from now on. Throws Refusal.
+std::vector<Output> checked_outputs(const std::vector<std::filesystem::path>& names,
+                                    const DisplayChoice& display, const ColorConfig& colors,
+                                    OutputFiles& files);
 
 void write_outputs(const std::vector<Output>& outputs, const Image& picture,
-                   const ColorConfig& colors, const std::string& canonical_request);
+                   const ColorConfig& colors, const std::string& canonical_request,
+                   OutputFiles& files);
 
 }  // namespace translucube::server

@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -19,7 +18,6 @@
 #include "api/request/scene_spec.h"
 #include "renderer/film/explorable_develop.h"
 #include "renderer/film/explorable_file.h"
-#include "server/base/file.h"
 #include "server/cli/command.h"
 #include "server/cli/config.h"
 #include "server/cli/input.h"
@@ -96,28 +94,44 @@ int explain(const Scene& scene, Pixel pixel, std::uint32_t sample,
   const auto [x, y] = pixel;
   if (x < 0 || y < 0 || x >= request.width || y >= request.height)
     throw Refusal{exit_bad_request, "--pixel: lies outside of the image\n"};
-  std::cout << explain_sample(scene, x, y, sample) << std::flush;
+  print(explain_sample(scene, x, y, sample));
   return 0;
 }
 
 /// The picture; of an explorable request, its film goes to a file where one is named.
 Image developed(const Scene& scene, const Film& film, const RenderOptions& options,
-                const api::RenderRequest& request, const std::string& canonical) {
+                const api::RenderRequest& request, const std::string& canonical,
+                OutputFiles& files) {
   if (!request.explorable) return develop(film);
   const ExplorableFilm explorable = explorable_film(scene, film);
   if (options.explorable_out)
-    write_atomically(*options.explorable_out, [&](const fs::path& temporary) {
+    files.write(*options.explorable_out, [&](const fs::path& temporary) {
       write_explorable(temporary, explorable, canonical);
     });
   return develop_explorable(explorable, explorable_basis(scene)->own, options.setting.threads);
 }
 
-void check_places(const RenderOptions& options, const api::RenderRequest& request) {
-  if (options.stats) check_output_place(*options.stats);
+/// What the picture shows but does not say.
+void note_surprises(const RenderStats& stats) {
+  if (stats.camera_inside) std::fputs("The camera is inside the body.\n", stderr);
+  constexpr double visible = 1e-3;
+  if (stats.truncated_energy > visible)
+    std::fprintf(stderr, "%.1f %% of the light was given up: its paths were too long.\n",
+                 100 * stats.truncated_energy);
+}
+
+void check_places(const RenderOptions& options, const api::RenderRequest& request,
+                  OutputFiles& files) {
+  files.reads(options.request);
+  if (!options.setting.config.empty()) files.reads(options.setting.config);
+  if (const auto* mesh = std::get_if<api::MeshRequest>(&request.object)) files.reads(mesh->file);
+  if (const auto* map = std::get_if<api::FileEnvironment>(&request.environment.source))
+    files.reads(map->file);
+  if (options.stats) files.writes(*options.stats);
   if (!options.explorable_out) return;
   if (!request.explorable)
     throw Refusal{exit_bad_request, "--explorable-out: the request is not explorable\n"};
-  check_output_place(*options.explorable_out);
+  files.writes(*options.explorable_out);
 }
 
 int render_or_throw(const RenderOptions& options, const Interruption& interruption) {
@@ -129,8 +143,10 @@ int render_or_throw(const RenderOptions& options, const Interruption& interrupti
   const api::RenderRequest request = accepted(
       api::parse_render_request(read_input(options.request, catalog.limits.body_bytes), catalog));
   const ColorConfig colors(catalog.display_config);
-  const std::vector<Output> outputs = checked_outputs(options.outputs, options.display, colors);
-  check_places(options, request);
+  OutputFiles files;
+  check_places(options, request, files);
+  const std::vector<Output> outputs =
+      checked_outputs(options.outputs, options.display, colors, files);
 
   const std::shared_ptr<const Scene> scene = build_scene(api::scene_spec(request, catalog));
   if (options.pixel) return explain(*scene, pixel_of(*options.pixel), options.sample, request);
@@ -141,12 +157,12 @@ int render_or_throw(const RenderOptions& options, const Interruption& interrupti
   }();
   if (result.stopped) return interruption.exit_status();
   refuse_nan(result.stats);
+  note_surprises(result.stats);
   const std::string canonical = api::canonical_json(request);
-  write_outputs(outputs, developed(*scene, result.film, options, request, canonical), colors,
-                canonical);
-  if (options.stats)
-    write_atomically(*options.stats, stats_document(result.stats, request, catalog));
-  return 0;
+  write_outputs(outputs, developed(*scene, result.film, options, request, canonical, files), colors,
+                canonical, files);
+  if (options.stats) files.write(*options.stats, stats_document(result.stats, request, catalog));
+  return files.status();
 }
 
 }  // namespace

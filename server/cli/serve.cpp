@@ -17,6 +17,7 @@
 
 #include "picture/image_io.h"
 #include "server/base/crash_mark.h"
+#include "server/base/descriptors.h"
 #include "server/base/log.h"
 #include "server/base/signals.h"
 #include "server/calls/front.h"
@@ -77,6 +78,8 @@ HttpOptions http_options(const ServerConfig& config, const api::Limits& limits) 
   http.port = config.port;
   http.body_bytes = limits.body_bytes;
   // What may take long is bounded by places of its own: http_threads are left for all else.
+  http.answering = config.http_threads;
+  http.in_line = 4 * config.http_threads;
   http.threads =
       config.http_threads + config.waiting_requests + config.event_streams + config.transfers;
   http.transfers = config.transfers;
@@ -117,8 +120,9 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   ::mallopt(M_TRIM_THRESHOLD, 1 << 20);
   ::umask(077);  // the queue and the pictures are their user's alone
   prepare_image_codecs();
-  const auto [catalog, config] = configured(options);
+  auto [catalog, config] = configured(options);
   set_up_log(config.log_format);
+  fit_descriptors(config, raise_descriptor_limit());
   AccessPolicy policy = access_policy(config);
   const ColorConfig colors(catalog.display_config);
   const DataFolder folder(config.data_folder);
@@ -132,6 +136,8 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   Metrics metrics;
   JobService service(catalog, config, colors, *store, artifacts, folder, metrics);
   metrics.set_store_gauges([&] { return gauges_of(store->gauges(), service.figures()); });
+  // The first look at the disk takes what it takes; from here on nobody waits for one.
+  static_cast<void>(service.unready_reason());
   CallContext context(service, catalog, colors, config);
   Front front(std::move(policy), metrics,
               [&](const HttpRequest& request) { return respond(context, request); });

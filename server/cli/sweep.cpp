@@ -7,7 +7,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +16,6 @@
 #include "api/request/scene_spec.h"
 #include "renderer/light/environment_cache.h"
 #include "renderer/render.h"
-#include "server/base/file.h"
 #include "server/cli/command.h"
 #include "server/cli/config.h"
 #include "server/cli/input.h"
@@ -79,13 +77,17 @@ class SweepFolder {
         png_sheet_(sweep, png_, colors),
         exr_sheet_(sweep, exr_, colors) {
     fs::create_directories(folder_);
+    files_.reads(options.request);
+    for (const char* name : {"sheet.png", "sheet.exr", "sweep.json"}) files_.writes(folder_ / name);
   }
+
+  int status() const { return files_.status(); }
 
   void add_point(std::size_t point, const Image& picture, const RenderStats& stats) {
     const std::string canonical = api::canonical_json(api::point_request(sweep_, point)),
                       name = point_name(sweep_, point);
     write_outputs({{folder_ / (name + ".exr"), exr_}, {folder_ / (name + ".png"), png_}}, picture,
-                  colors_, canonical);
+                  colors_, canonical, files_);
     png_sheet_.place(point, picture);
     exr_sheet_.place(point, picture);
     points_.push_back({{"point", point},
@@ -102,19 +104,20 @@ class SweepFolder {
 
   void finish() {
     const std::string canonical = api::canonical_json(sweep_);
-    write_atomically(folder_ / "sheet.png",
-                     [&](const fs::path& file) { png_sheet_.write(file, canonical); });
-    write_atomically(folder_ / "sheet.exr",
-                     [&](const fs::path& file) { exr_sheet_.write(file, canonical); });
+    files_.write(folder_ / "sheet.png",
+                 [&](const fs::path& file) { png_sheet_.write(file, canonical); });
+    files_.write(folder_ / "sheet.exr",
+                 [&](const fs::path& file) { exr_sheet_.write(file, canonical); });
     const json document{{"request", json::parse(canonical)}, {"points", sweep_.point_count()},
                         {"traced_images", traced_images_},   {"seconds", seconds_},
                         {"cpu_seconds", cpu_seconds_},       {"results", points_}};
-    write_atomically(folder_ / "sweep.json", document.dump(1) + '\n');
+    files_.write(folder_ / "sweep.json", document.dump(1) + '\n');
   }
 
  private:
   const api::Sweep& sweep_;
   const fs::path folder_;
+  OutputFiles files_;
   const ColorConfig& colors_;
   const ImageForm png_, exr_;
   SweepSheet png_sheet_, exr_sheet_;
@@ -130,7 +133,7 @@ int sweep_or_throw(const SweepOptions& options, const Interruption& interruption
   const api::Sweep sweep = accepted(
       api::parse_sweep_request(read_input(options.request, catalog.limits.body_bytes), catalog));
   if (options.dry_run) {
-    std::cout << api::counts_json(sweep, catalog.limits) << std::endl;
+    print(api::counts_json(sweep, catalog.limits) + '\n');
     return 0;
   }
   prepare_image_codecs();
@@ -157,7 +160,7 @@ int sweep_or_throw(const SweepOptions& options, const Interruption& interruption
   }
   if (terminal) std::fputs("\r\x1b[K", stderr);
   folder.finish();
-  return 0;
+  return folder.status();
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <memory>
 
 #include "server/calls/tokens.h"
 #include "server/cli/command.h"
+#include "server/cli/output_files.h"
 #include "server/cli/verbs.h"
 
 namespace translucube::server {
@@ -11,13 +11,11 @@ namespace {
 
 /// Prints a new token and its entry for the file that server.tokens_file names.
 int make(const std::string& name) {
-  if (!is_token_name(name)) {
-    std::cerr << "--name: must be letters, digits and . _ -, 64 at most\n";
-    return exit_bad_request;
-  }
+  if (!is_token_name(name))
+    throw Refusal{exit_bad_request, "--name: must be letters, digits and . _ -, 64 at most\n"};
   const NewToken made = make_token(name);
-  std::cout << "token, shown this once:   " << made.token << '\n'
-            << "entry of the tokens file: " << made.entry << '\n';
+  print("token, shown this once:   " + made.token + "\nentry of the tokens file: " + made.entry +
+        '\n');
   return 0;
 }
 
@@ -27,7 +25,7 @@ Verb add_token(CLI::App& app) {
   const auto name = std::make_shared<std::string>();
   CLI::App* verb = app.add_subcommand("token", "Makes a token for who may use the service");
   verb->add_option("--name", *name, "Who will have it")->required();
-  return {verb, [name] { return make(*name); }};
+  return {verb, [name] { return ended_command("token", [&] { return make(*name); }); }};
 }
 
 }  // namespace translucube::server

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
+#include <utility>
 
 namespace translucube::server {
 namespace {
@@ -17,10 +17,20 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr std::size_t chunk = 1 << 14;
+// What is taken in of a body before others have their turn.
+constexpr std::size_t at_a_time = 1 << 20;
 // An answer up to this size leaves in one piece, which wakes its client once.
 constexpr std::size_t gathered = 1 << 16;
 // How soon a thread that waits sees that the service stops.
 constexpr milliseconds glance(200);
+constexpr std::chrono::seconds longest_body(60);
+// RFC 9112, 2.2: an empty line before a request is ignored; clients of old send one after a body.
+constexpr std::size_t most_empty_lines = 64;
+
+const api::Problem too_many_empty_lines{
+    api::ProblemCode::malformed_http, "There are only empty lines.", {}};
+
+bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK; }
 
 }  // namespace
 
@@ -28,10 +38,7 @@ Connection::Connection(FileDescriptor socket, Places::Place place, const Connect
     : socket_(std::move(socket)), place_(std::move(place)), rules_(rules) {}
 
 ssize_t Connection::fill() {
-  if (read_ == buffer_.size()) {
-    buffer_.clear();
-    read_ = 0;
-  }
+  buffer_.erase(0, std::exchange(read_, 0));
   std::array<char, chunk> bytes;
   ssize_t got;
   do {
@@ -41,44 +48,101 @@ ssize_t Connection::fill() {
   return got;
 }
 
-Connection::Head Connection::head() const {
-  const std::string_view received = std::string_view(buffer_).substr(read_);
-  if (received.find("\r\n\r\n") != received.npos) return Head::whole;
-  if (received.size() > largest_head) return Head::too_large;
-  return received.empty() ? Head::missing : Head::begun;
+/// False where there are too many.
+bool Connection::skip_empty_lines() {
+  for (; unread().starts_with("\r\n"); read_ += 2) ++skipped_;
+  return skipped_ <= most_empty_lines;
 }
 
-Connection::Head Connection::receive_head() {
-  for (;;) {
-    const Head now = head();
-    if (now == Head::whole || now == Head::too_large) return now;
-    const ssize_t got = fill();
-    if (got == 0) return Head::closed;
-    if (got < 0) return errno == EAGAIN || errno == EWOULDBLOCK ? now : Head::closed;
+Connection::Receipt Connection::received() {
+  if (exchange_) return received_of_body();
+  if (!skip_empty_lines()) return Receipt::faulty;
+  const std::string_view bytes = unread();
+  if (bytes.empty() || bytes == "\r") return Receipt::missing;
+  switch (scan_.scan(bytes)) {
+    case HeadScan::State::begun:
+      return Receipt::begun;
+    case HeadScan::State::whole:
+      return Receipt::whole;
+    case HeadScan::State::faulty:
+      break;
   }
+  return Receipt::faulty;
+}
+
+Connection::Receipt Connection::received_of_body() {
+  std::string_view bytes = unread();
+  if (!bytes.empty()) body_moved_ = steady_clock::now();
+  exchange_->body.take(bytes);
+  read_ = buffer_.size() - bytes.size();
+  if (exchange_->body.fault()) return Receipt::faulty;
+  return exchange_->body.whole() ? Receipt::whole : Receipt::begun;
+}
+
+Connection::Receipt Connection::receive() {
+  for (std::size_t taken = 0;;) {
+    const Receipt now = received();
+    if (now == Receipt::whole || now == Receipt::faulty || taken >= at_a_time) return now;
+    const ssize_t got = fill();
+    if (got == 0) return Receipt::closed;
+    if (got < 0) return would_block() ? now : Receipt::closed;
+    taken += static_cast<std::size_t>(got);
+    if (exchange_) moved_ += static_cast<std::uint64_t>(got);
+  }
+}
+
+const api::Problem& Connection::fault() const {
+  if (exchange_) return *exchange_->body.fault();
+  return skipped_ > most_empty_lines ? too_many_empty_lines : scan_.fault();
 }
 
 bool Connection::drop_received() {
   ssize_t got = 1;
-  for (std::size_t dropped = 0; got > 0 && dropped < largest_head; dropped += chunk) {
+  for (std::size_t dropped = 0; got > 0 && dropped < at_a_time; dropped += chunk) {
     read_ = buffer_.size();
     got = fill();
   }
-  return got > 0 || (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK));
+  return got > 0 || (got < 0 && would_block());
 }
 
-void Connection::end_request() {
+std::string_view Connection::head() const { return unread().substr(0, scan_.size()); }
+
+void Connection::begin(std::unique_ptr<Exchange> exchange) {
+  read_ += scan_.size();
+  scan_ = {};
+  skipped_ = 0;
+  exchange_ = std::move(exchange);
+  body_begun_ = body_moved_ = steady_clock::now();
+}
+
+void Connection::end_exchange() {
+  exchange_.reset();
   transfer_.reset();
   unsent_.clear();
   sent_ = moved_ = 0;
   waited_ = {};
-  crowded_ = false;
+  hurries_ = false;
 }
 
-bool Connection::wait(short events) {
+std::size_t Connection::held() const {
+  return buffer_.capacity() + (exchange_ ? exchange_->body.held() : 0);
+}
+
+Connection::Time Connection::body_deadline() const {
+  const auto earned = milliseconds(moved_ * 1000 / chunk);
+  return std::min({body_moved_ + rules_.patience, body_begun_ + rules_.patience + earned,
+                   body_begun_ + std::max<milliseconds>(longest_body, rules_.patience)});
+}
+
+void Connection::acknowledge() {
+  constexpr int yes = 1;
+  ::setsockopt(socket_.get(), IPPROTO_TCP, TCP_QUICKACK, &yes, sizeof yes);
+}
+
+bool Connection::wait_for_room() {
+  if (hurries_) return false;
   if (!transfer_) transfer_ = rules_.transfers.take();
-  crowded_ = !transfer_;
-  if (crowded_) return false;
+  if (!transfer_) return false;
   const auto earned = milliseconds(moved_ * 1000 / chunk);
   const auto start = steady_clock::now();
   const auto end = start + std::min<std::chrono::nanoseconds>(rules_.patience,
@@ -86,7 +150,7 @@ bool Connection::wait(short events) {
   int ready = 0;
   for (auto now = start; ready == 0 && now < end && !rules_.stopping; now = steady_clock::now()) {
     const auto left = std::chrono::ceil<milliseconds>(end - now);
-    pollfd poll{socket_.get(), events, 0};
+    pollfd poll{socket_.get(), POLLOUT, 0};
     ready = ::poll(&poll, 1, static_cast<int>(std::min(left, glance).count()));
     if (ready < 0 && errno == EINTR) ready = 0;
   }
@@ -94,64 +158,49 @@ bool Connection::wait(short events) {
   return ready > 0;
 }
 
-ssize_t Connection::read(char* out, std::size_t size) {
-  while (read_ == buffer_.size()) {
-    const ssize_t got = fill();
-    if (got > 0) {
-      moved_ += static_cast<std::uint64_t>(got);
-      break;
-    }
-    if (got == 0) return 0;
-    if (errno != EAGAIN && errno != EWOULDBLOCK) return -1;
-    if (!flush()) return -1;
-    // A client may wait for the acknowledgement of a request's head before it sends the body
-    // (Nagle's algorithm, RFC 896), and the kernel for 40 ms before it acknowledges.
-    constexpr int yes = 1;
-    ::setsockopt(socket_.get(), IPPROTO_TCP, TCP_QUICKACK, &yes, sizeof yes);
-    if (!wait(POLLIN)) return -1;
+bool Connection::write(std::string_view bytes) {
+  if (unsent_.size() + bytes.size() <= gathered) {
+    unsent_ += bytes;
+    return true;
   }
-  size = std::min(size, buffer_.size() - read_);
-  std::memcpy(out, buffer_.data() + read_, size);
-  read_ += size;
-  return static_cast<ssize_t>(size);
-}
-
-ssize_t Connection::write(const char* bytes, std::size_t size) {
-  if (unsent_.size() + size > gathered) {
-    if (!flush()) return -1;
-    return send(bytes, size);
+  if (!flush()) return false;
+  while (!bytes.empty()) {
+    const ssize_t wrote = send(bytes);
+    if (wrote < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(wrote));
   }
-  unsent_.append(bytes, size);
-  sent_ += size;
-  return static_cast<ssize_t>(size);
+  return true;
 }
 
 bool Connection::flush() {
-  std::size_t done = 0;
-  const std::uint64_t sent = sent_;
-  while (done < unsent_.size()) {
-    const ssize_t wrote = send(unsent_.data() + done, unsent_.size() - done);
+  std::string_view bytes = unsent_;
+  while (!bytes.empty()) {
+    const ssize_t wrote = send(bytes);
     if (wrote < 0) break;
-    done += static_cast<std::size_t>(wrote);
+    bytes.remove_prefix(static_cast<std::size_t>(wrote));
   }
-  const bool all = done == unsent_.size();
-  sent_ = sent;
+  const bool all = bytes.empty();
   unsent_.clear();
   return all;
 }
 
-ssize_t Connection::send(const char* bytes, std::size_t size) {
+ssize_t Connection::send(std::string_view bytes) {
   for (;;) {
-    const ssize_t wrote = ::send(socket_.get(), bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+    const ssize_t wrote =
+        ::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (wrote >= 0) {
       sent_ += static_cast<std::uint64_t>(wrote);
       moved_ += static_cast<std::uint64_t>(wrote);
       return wrote;
     }
     if (errno == EINTR) continue;
-    if (errno != EAGAIN && errno != EWOULDBLOCK) return -1;
-    if (!wait(POLLOUT)) return -1;
+    if (!would_block() || !wait_for_room()) return -1;
   }
+}
+
+void Connection::catch_up() {
+  transfer_.reset();
+  waited_ = {};
 }
 
 bool Connection::client_listens() const {
@@ -160,7 +209,9 @@ bool Connection::client_listens() const {
 }
 
 void Connection::write_at_once(std::string_view bytes) {
-  (void)::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  const ssize_t wrote =
+      ::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (wrote > 0) sent_ += static_cast<std::uint64_t>(wrote);
 }
 
 void Connection::end_sending() { ::shutdown(socket_.get(), SHUT_WR); }

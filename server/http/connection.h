@@ -5,56 +5,71 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "server/base/file.h"
 #include "server/base/places.h"
+#include "server/http/exchange.h"
+#include "server/http/head_scan.h"
 
 namespace translucube::server {
 
 /// What all connections of a service share.
 struct ConnectionRules {
-  /// Bounds the threads that wait for slow clients: a thread that must wait for its client's next
-  /// bytes, or for room to send, takes a place and keeps it to the end of the request.
+  /// Bounds the threads that wait for clients that read slowly: a thread that must wait for room to
+  /// send takes a place and keeps it to the end of the answer.
   Places& transfers;
-  /// How long a request may keep its thread waiting: at a time, and in all, where each 16 KiB moved
-  /// earn a second more.
+  /// How long a client may keep a request waiting for its bytes, or for room to send: at a time,
+  /// and in all, where each 16 KiB moved earn a second more.
   std::chrono::milliseconds patience;
   const std::atomic<bool>& stopping;  ///< then nobody waits for a client any more
 };
 
-/// A client's TCP connection. Between requests it belongs to the Lobby, which only looks at what
-/// has come (`receive_head`); during one to a thread, which may wait (`read`, `write`).
+/// A client's TCP connection. While a request comes it belongs to the Lobby, which only looks at
+/// what is there (`receive`); while one is answered to a thread, which may wait (`write`).
 class Connection {
  public:
-  static constexpr std::size_t largest_head = 1 << 16;
+  using Time = std::chrono::steady_clock::time_point;
 
   Connection(FileDescriptor socket, Places::Place place, const ConnectionRules& rules);
 
-  enum class Head { missing, begun, whole, too_large, closed };
-  Head head() const;  ///< of the next request, in what was taken in
-  /// Takes in what has come, without waiting, up to the end of a request's headers.
-  Head receive_head();
+  /// What there is of a request: of its head, and of its body once the exchange has begun.
+  enum class Receipt { missing, begun, whole, faulty, closed };
+  /// Takes in what has come, without waiting, up to the end of the head or the body.
+  Receipt receive();
+  /// Of what was taken in before.
+  Receipt received();
+  const api::Problem& fault() const;  ///< of what is faulty
+  bool has_unread() const { return read_ < buffer_.size(); }
   /// Drops some of what has come, without waiting. False once the client has closed.
   bool drop_received();
 
-  /// Up to `size` bytes, at least one; 0 at the end of the stream, -1 on failure or when the
-  /// client was waited for too long.
-  ssize_t read(char* buffer, std::size_t size);
-  /// Small pieces are gathered; `flush` sends them, as does a read that must wait for the client.
-  ssize_t write(const char* bytes, std::size_t size);
+  std::string_view head() const;  ///< the bytes of a head that is whole
+  /// The head was read: what follows is the body.
+  void begin(std::unique_ptr<Exchange> exchange);
+  Exchange* exchange() const { return exchange_.get(); }
+  void end_exchange();
+  std::size_t held() const;  ///< bytes in memory
+  /// When the body must have come, or some more of it.
+  Time body_deadline() const;
+  /// A client may wait for the acknowledgement of a request's head before it sends the body
+  /// (Nagle's algorithm, RFC 896), and the kernel for 40 ms before it acknowledges.
+  void acknowledge();
+
+  /// From here on, to the end of the exchange, a client that does not read is not waited for.
+  void hurry() { hurries_ = true; }
+  /// Small pieces are gathered; `flush` sends them. False where the client was waited for too long
+  /// or is gone.
+  bool write(std::string_view bytes);
   bool flush();
+  /// All that there was is sent: a client that was slow gives back the thread's place, and its time
+  /// begins anew.
+  void catch_up();
   /// False once the client has closed its side or the connection is broken.
   bool client_listens() const;
-  /// The last failure was for want of a place for slow clients.
-  bool crowded() const { return crowded_; }
-  std::uint64_t sent() const { return sent_; }  ///< bytes in this request
-  /// The next request could not be told from what is left of this one.
-  void end_after_request() { ends_ = true; }
-  bool ends() const { return ends_; }
-  /// Gives back the place for slow clients; the counts begin anew.
-  void end_request();
+  std::uint64_t sent() const { return sent_; }  ///< bytes in this exchange
 
   /// Sends what fits at once, for refusals.
   void write_at_once(std::string_view bytes);
@@ -64,19 +79,25 @@ class Connection {
   int socket() const { return socket_.get(); }
 
  private:
-  bool wait(short events);
+  std::string_view unread() const { return std::string_view(buffer_).substr(read_); }
+  bool skip_empty_lines();
+  Receipt received_of_body();
   ssize_t fill();
-  ssize_t send(const char* bytes, std::size_t size);
+  bool wait_for_room();
+  ssize_t send(std::string_view bytes);
 
   FileDescriptor socket_;
   Places::Place place_, transfer_;
   ConnectionRules rules_;
   std::string buffer_;  ///< received, from `read_` on not yet read
-  std::size_t read_ = 0;
+  std::size_t read_ = 0, skipped_ = 0;
+  HeadScan scan_;
+  std::unique_ptr<Exchange> exchange_;
   std::string unsent_;
   std::uint64_t sent_ = 0, moved_ = 0;
+  Time body_begun_{}, body_moved_{};
   std::chrono::nanoseconds waited_{0};
-  bool crowded_ = false, ends_ = false;
+  bool hurries_ = false;
 };
 
 }  // namespace translucube::server

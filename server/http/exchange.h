@@ -1,25 +1,25 @@
 #pragma once
 
-#include "server/http/socket_server.h"
+#include <chrono>
+
+#include "server/http/body_reader.h"
+#include "server/http/message.h"
+#include "server/http/request_head.h"
 
 namespace translucube::server {
 
-/// Puts an answer of ours into the library's. `close`: the connection ends after it, because its
-/// stream cannot be read on (a body was left in it).
-void put_answer(HttpResponse answer, const std::string& request_id, const SocketServer& server,
-                httplib::Response& response, bool close = false);
+/// A request whose head was read, until its answer is sent.
+struct Exchange {
+  /// `limit`: of the body [bytes].
+  Exchange(RequestHead&& its_head, std::uint64_t limit);
 
-struct Upload {
-  std::string body;
-  bool whole = false, too_large = false;
+  RequestHead head;  ///< without what `request` has of it
+  HttpRequest request;
+  BodyReader body;
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 
-/// What a client may be made to send of a body that is refused, so that it gets to read the answer;
-/// a body that announces more than this is left unread.
-inline constexpr std::uint64_t longest_drain = std::uint64_t(1) << 30;
-
-/// Reads a body of at most `limit` bytes, as sent: no decoding, which could blow it up.
-Upload receive(httplib::Request& request, const httplib::ContentReader& reader,
-               std::uint64_t limit);
+/// Names a request in log and answer; it need not be hard to guess.
+std::string new_request_id();
 
 }  // namespace translucube::server

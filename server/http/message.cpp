@@ -1,5 +1,7 @@
 #include "server/http/message.h"
 
+#include <algorithm>
+
 namespace translucube::server {
 
 HttpResponse problem_response(const api::Problem& problem) {
@@ -12,14 +14,11 @@ HttpResponse problem_response(const api::Problem& problem) {
   return response;
 }
 
-std::string wire_text(const HttpResponse& response) {
-  const std::string& body = std::get<std::string>(response.body);
-  // RFC 9112, 4: the reason phrase may be empty.
-  std::string text = "HTTP/1.1 " + std::to_string(response.status) + " \r\n";
-  for (const auto& [name, value] : response.headers) text += name + ": " + value + "\r\n";
-  return text + "Content-Type: " + response.content_type +
-         "\r\nContent-Length: " + std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" +
-         body;
+std::string printable(std::string_view text) {
+  std::string result(text.substr(0, 200));
+  std::ranges::replace_if(
+      result, [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  return result;
 }
 
 }  // namespace translucube::server

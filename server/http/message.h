@@ -26,6 +26,8 @@ struct HttpRequest {
   std::string body;
   std::string id = {};      ///< of the request: the client's or a new one, for the log
   std::string client = {};  ///< name of the token it carries, "" where none is needed
+  /// A call that waits says so before, so that others are answered meanwhile.
+  std::function<void()> give_way = [] {};
 
   std::string_view header(const std::string& lower_case_name) const {
     const auto it = headers.find(lower_case_name);
@@ -45,7 +47,8 @@ struct FileSlice {
   std::uint64_t offset = 0, length = 0;
 };
 
-/// Server-sent events as they come, sent with status 200 and no end that is known before.
+/// Server-sent events as they come, sent with status 200 and no end that is known before; to HEAD
+/// only the headers are.
 struct EventStream {
   /// The next bytes to send. Waits for a second at most: "" says that there is nothing yet, nullopt
   /// that the stream is over. Called by one thread at a time; destroyed as soon as the client has
@@ -63,7 +66,7 @@ struct HttpResponse {
 /// The answer that carries a problem, with the headers that its status asks for.
 HttpResponse problem_response(const api::Problem& problem);
 
-/// An answer with a text body as bytes for a connection that ends with it.
-std::string wire_text(const HttpResponse& response);
+/// Text of a client for a log line: no control characters, no more than it needs.
+std::string printable(std::string_view text);
 
 }  // namespace translucube::server

@@ -5,18 +5,13 @@
 #include <vector>
 
 #include "api/base/text.h"
+#include "server/http/grammar.h"
 
 namespace translucube::server {
 namespace {
 
 using api::lower_case;
 using api::number_of;
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
 
 /// Splits at a separator outside of quoted strings.
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -54,6 +49,30 @@ int specificity(const std::string& range, std::string_view mime) {
   return range == "*/*" || range == "*" ? 1 : 0;
 }
 
+/// The tag without the mark of a weak one.
+std::string_view opaque(std::string_view tag) {
+  if (tag.starts_with("W/")) tag.remove_prefix(2);
+  return tag;
+}
+
+/// Whether "*", or an entity tag of the list up to the first that is malformed, is `such`: in
+/// quotes, between which a backslash is a character as any other (RFC 9110, 8.8.3).
+template <typename Such>
+bool has_etag(std::string_view list, Such such) {
+  if (trimmed(list) == "*") return true;
+  while (!list.empty()) {
+    while (!list.empty() && (is_blank(list.front()) || list.front() == ',')) list.remove_prefix(1);
+    const std::size_t open = list.starts_with("W/") ? 2 : 0;
+    if (list.size() <= open || list[open] != '"') return false;
+    const std::size_t close = list.find('"', open + 1);
+    if (close == list.npos) return false;
+    if (such(list.substr(0, close + 1))) return true;
+    list.remove_prefix(close + 1);
+    if (!trimmed(take_until(list, ",")).empty()) return false;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<ImageFormat> negotiate_image(std::string_view accept) {
@@ -79,15 +98,12 @@ bool is_json(std::string_view content_type) {
   return lower_case(split(content_type, ';')[0]) == "application/json";
 }
 
-bool etag_matches(std::string_view if_none_match, std::string_view etag) {
-  const auto opaque = [](std::string_view tag) {
-    if (tag.starts_with("W/")) tag.remove_prefix(2);
-    return tag;
-  };
-  if (trimmed(if_none_match) == "*") return true;
-  return std::ranges::any_of(split(if_none_match, ','), [&](std::string_view tag) {
-    return !tag.empty() && opaque(tag) == opaque(etag);
-  });
+bool etag_matches(std::string_view list, std::string_view etag) {
+  return has_etag(list, [&](std::string_view tag) { return opaque(tag) == opaque(etag); });
+}
+
+bool etag_matches_strongly(std::string_view list, std::string_view etag) {
+  return has_etag(list, [&](std::string_view tag) { return tag == etag && opaque(tag) == tag; });
 }
 
 std::optional<int> preferred_wait(std::string_view prefer) {

@@ -19,8 +19,10 @@ std::optional<ImageFormat> negotiate_image(std::string_view accept);
 /// True for application/json, with or without parameters.
 bool is_json(std::string_view content_type);
 
-/// If-None-Match (RFC 9110, 13.1.2), compared weakly.
-bool etag_matches(std::string_view if_none_match, std::string_view etag);
+/// Whether a list of entity tags, or "*", has this one: compared weakly, as If-None-Match does, or
+/// strongly, as If-Match does (RFC 9110, 8.8.3.2).
+bool etag_matches(std::string_view list, std::string_view etag);
+bool etag_matches_strongly(std::string_view list, std::string_view etag);
 
 /// The seconds of `wait` in a Prefer header (RFC 7240, 4.3); empty where it is not there or is no
 /// number: a preference that is not understood is ignored.

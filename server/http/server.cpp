@@ -1,285 +1,243 @@
 #include "server/http/server.h"
 
 #include <spdlog/spdlog.h>
-#include <sys/socket.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <array>
 #include <chrono>
-#include <cstring>
-#include <random>
-#include <span>
+#include <tuple>
 
 #include "api/base/text.h"
-#include "server/base/ids.h"
-#include "server/http/exchange.h"
-#include "server/http/wire.h"
+#include "server/base/turns.h"
+#include "server/http/answer_writer.h"
+#include "server/http/listener.h"
+#include "server/http/lobby.h"
+#include "server/http/thread_pool.h"
 
 namespace translucube::server {
 namespace {
 
 using api::ProblemCode;
 using std::chrono::steady_clock;
-using Handled = httplib::Server::HandlerResponse;
 
-constexpr const char* request_id_header = "X-Request-Id";
-constexpr const char* our_fault = "The service failed on this request.";
+constexpr std::size_t most_held = 64 << 20;
+constexpr std::chrono::milliseconds longest_line(2000);
 
-/// The request that this thread answers. A thread of the pool has one at a time.
-struct Current {
-  HttpRequest request;
-  steady_clock::time_point start;
-};
-thread_local Current current;
+/// RFC 9110, 9.1: another method is not implemented, one of these perhaps not allowed.
+constexpr std::array<std::string_view, 7> methods{"GET",    "HEAD",  "POST",   "PUT",
+                                                  "DELETE", "PATCH", "OPTIONS"};
 
-/// The library hands out const references to requests that it goes on to use, and has no other way
-/// to switch off what it would do by itself.
-httplib::Request& writable(const httplib::Request& request) {
-  return const_cast<httplib::Request&>(request);
+HttpResponse problem(ProblemCode code, std::string detail) {
+  return problem_response({code, std::move(detail), {}});
 }
 
-bool is_request_id(std::string_view text) {
-  return !text.empty() && text.size() <= 64 && std::ranges::all_of(text, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
-  });
-}
-
-/// Names a request in the log; it need not be hard to guess.
-std::string request_id() {
-  thread_local std::mt19937_64 numbers{std::random_device()()};
-  const std::uint64_t number = numbers();
-  return hex(std::span(reinterpret_cast<const unsigned char*>(&number), sizeof number));
-}
-
-/// Makes the current request, without a body.
-void begin(const httplib::Request& request) {
-  HttpRequest plain{request.method, request.path, {}, {}, {}};
-  for (const auto& [name, value] : request.params) plain.query.emplace_back(name, value);
-  for (const auto& [name, value] : request.headers) {
-    const auto [it, fresh] = plain.headers.emplace(api::lower_case(name), value);
-    if (!fresh) it->second += ", " + value;
-  }
-  const std::string given = request.get_header_value(request_id_header);
-  plain.id = is_request_id(given) ? given : request_id();
-  current = {std::move(plain), steady_clock::now()};
-}
+/// A content of GET means nothing (RFC 9110, 9.3.1) but, to a proxy, perhaps another request.
+bool takes_body(std::string_view method) { return method != "GET" && method != "HEAD"; }
 
 }  // namespace
 
 struct HttpServer::Impl {
-  HttpHandlers handlers;
-  HttpOptions options;
-  SocketServer http;
-  int port = 0;
-  std::atomic<bool> entered = false, stopped = false, left = false;
+  const HttpHandlers handlers;
+  const HttpOptions options;
+  Listener listener;
+  std::atomic<bool> stopping = false, running = false;
+  Places connections, transfers;
+  const ConnectionRules rules;
+  Turns turns;
+  Lobby lobby;
+  ThreadPool pool;  // last: its threads use all of it
 
   Impl(HttpHandlers h, const HttpOptions& o)
       : handlers(std::move(h)),
         options(o),
-        http(o, [this](ProblemCode code) { return refusal(code); }) {}
+        listener(o.host, o.port),
+        connections(o.connections),
+        transfers(o.transfers),
+        rules{transfers, o.transfer_timeout, stopping},
+        turns(static_cast<std::size_t>(o.answering), static_cast<std::size_t>(o.in_line),
+              longest_line),
+        lobby({o.header_timeout, o.idle_timeout}, most_held,
+              [this](const auto& why, const auto& connection) { return refusal(why, connection); }),
+        pool(
+            // One is left for what is urgent.
+            o.threads + o.in_line + 1, [this] { return lobby.next(); },
+            [this](auto connection, bool last) { serve(std::move(connection), last); }) {}
 
-  /// The answer on a connection whose request was not read.
-  std::string refusal(ProblemCode code) const {
-    HttpResponse answer = problem_response({code, "", {}});
+  /// The answer on a connection whose request was not read whole.
+  std::string refusal(const api::Problem& why, const Connection& connection) const {
+    HttpResponse answer = problem_response(why);
     RequestRecord record;
-    record.id = random_hex(8);
+    record.id = new_request_id();
+    if (const Exchange* exchange = connection.exchange()) record = record_of(*exchange);
     record.status = answer.status;
-    answer.headers.emplace_back(request_id_header, record.id);
+    answer.headers.emplace_back("X-Request-Id", record.id);
+    std::string text = last_answer(answer);
+    record.bytes = text.size();
     handlers.done(record);
-    return wire_text(answer);
+    return text;
   }
 
-  void send(HttpResponse answer, httplib::Response& response, bool close = false) {
-    put_answer(std::move(answer), current.request.id, http, response, close);
-  }
-  void send_problem(ProblemCode code, const char* detail, httplib::Response& response,
-                    bool close = false) {
-    send(problem_response({code, detail, {}}), response, close);
+  static RequestRecord record_of(const Exchange& exchange) {
+    const std::chrono::duration<double> took = steady_clock::now() - exchange.start;
+    const HttpRequest& request = exchange.request;
+    return {request.id, request.client, request.method, request.path, 0, took.count(), 0};
   }
 
-  void answer(httplib::Response& response) {
-    try {
-      send(handlers.respond(current.request), response);
-    } catch (const std::exception& error) {
-      spdlog::error("{} {}: {}", current.request.id, printable(current.request.path), error.what());
-      send_problem(ProblemCode::internal, our_fault, response);
-    }
-  }
-
-  /// Sees each request after its headers. Answers those without a body here, since the library
-  /// would wait for a body that was not announced; others go on to `upload`.
-  Handled route(const httplib::Request& request, httplib::Response& response) {
-    begin(request);
-    httplib::Request& own = writable(request);
-    own.ranges.clear();                    // ranges are the business of the image alone
-    own.headers.erase("Accept-Encoding");  // no compression: entity tags name the bytes
-    const BodyAnnouncement announced = announced_body(request);
-    const bool no_body = announced.kind == BodyAnnouncement::Kind::none;
-    if (auto refused = handlers.admit(current.request)) {
-      send(std::move(*refused), response, !no_body);
-      return Handled::Handled;
-    }
-    if (no_body) {
-      answer(response);
-      return Handled::Handled;
-    }
-    const bool takes_body = request.method == "POST" || request.method == "PUT" ||
-                            request.method == "PATCH" || request.method == "DELETE";
-    if (announced.kind == BodyAnnouncement::Kind::malformed || !takes_body) {
-      send_problem(
-          ProblemCode::malformed_http,
-          takes_body ? "The length of the body is not clear." : "This method takes no body.",
-          response, true);
-      return Handled::Handled;
-    }
-    if (announced.length > longest_drain) {
-      send(too_large(), response, true);
-      return Handled::Handled;
-    }
-    // What the library compares to a regular expression, one character a stack frame.
-    own.path = "/";
-    return Handled::Unhandled;
-  }
-
-  void upload(const httplib::Request& request, httplib::Response& response,
-              const httplib::ContentReader& reader) {
-    const bool encoded = request.has_header("Content-Encoding") &&
-                         request.get_header_value("Content-Encoding") != "identity";
-    Upload upload = receive(writable(request), reader, options.body_bytes);
-    if (upload.too_large) {
-      send(too_large(), response, !upload.whole);
-    } else if (!upload.whole && http.connection().crowded()) {
-      send_problem(ProblemCode::overloaded, "Too many clients send slowly.", response, true);
-    } else if (!upload.whole) {
-      send_problem(ProblemCode::malformed_http, "The body did not arrive whole.", response, true);
-    } else if (encoded) {
-      send_problem(ProblemCode::unsupported_media_type, "A body in a content coding is not taken.",
-                   response);
+  void enter(FileDescriptor socket) {
+    Places::Place place = connections.take();
+    while (!place && lobby.evict()) place = connections.take();
+    auto connection = std::make_unique<Connection>(std::move(socket), place, rules);
+    if (place) {
+      lobby.enter(std::move(connection));
     } else {
-      current.request.body = std::move(upload.body);
-      answer(response);
+      connection->write_at_once(refusal({ProblemCode::overloaded, "", {}}, *connection));
+      lobby.linger(std::move(connection));
     }
+  }
+
+  void serve(std::unique_ptr<Connection> connection, bool last) {
+    std::optional<HttpResponse> answer;
+    if (!connection->exchange()) {
+      if (!begin(*connection)) {
+        lobby.linger(std::move(connection));
+        return;
+      }
+      answer = refused_before_body(*connection->exchange());
+      if (!answer && awaits_body(*connection)) {
+        lobby.await_body(std::move(connection));
+        return;
+      }
+    }
+    Exchange& exchange = *connection->exchange();
+    const bool urgent = handlers.urgent(exchange.request);
+    if (!answer) answer = answer_to(exchange, urgent, last);
+    if (last) connection->hurry();
+    const bool later = answer->status == 503 && !urgent;
+    const Sent sent = send(*connection, *std::move(answer));
+    connection->end_exchange();
+    if (sent == Sent::persists && later)
+      lobby.rest(std::move(connection));
+    else if (sent == Sent::persists)
+      lobby.wait(std::move(connection));
+    else
+      lobby.linger(std::move(connection));
+  }
+
+  /// Reads the head. False where it was refused.
+  bool begin(Connection& connection) const {
+    auto head = read_request_head(connection.head());
+    if (!head) {
+      connection.write_at_once(refusal(head.problem(), connection));
+      return false;
+    }
+    connection.begin(std::make_unique<Exchange>(*std::move(head), options.body_bytes));
+    return true;
+  }
+
+  /// What the head alone is refused for: a body is not read, nor asked for, before.
+  std::optional<HttpResponse> refused_before_body(Exchange& exchange) const {
+    if (auto refused = handlers.admit(exchange.request)) return refused;
+    const auto& [method, head] = std::tie(exchange.request.method, exchange.head);
+    if (std::ranges::find(methods, method) == methods.end())
+      return problem(ProblemCode::not_implemented, "No path has this method.");
+    if (head.framing.has_body() && !takes_body(method))
+      return problem(ProblemCode::malformed_http, "This method takes no body.");
+    const std::uint64_t longest =
+        head.expects_continue ? options.body_bytes : BodyReader::longest_drain;
+    if (head.framing.length > longest) return too_large();
+    if (head.expects_more)
+      return problem(ProblemCode::expectation_failed, "Only 100-continue can be expected.");
+    return std::nullopt;
   }
 
   HttpResponse too_large() const {
-    return problem_response({ProblemCode::payload_too_large,
-                             "The body may have " + std::to_string(options.body_bytes) + " bytes.",
-                             {}});
+    return problem(ProblemCode::payload_too_large,
+                   "The body may have " + std::to_string(options.body_bytes) + " bytes.");
   }
 
-  /// Sees every answer of 400 and above, also those that the library gives by itself before
-  /// `route`.
-  Handled error(const httplib::Request& request, httplib::Response& response) {
-    if (response.has_header(request_id_header)) return Handled::Unhandled;  // one of ours
-    begin(request);
-    if (response.status == 416 && (request.method == "GET" || request.method == "HEAD") &&
-        announced_body(request).kind == BodyAnnouncement::Kind::none) {
-      // A Range header that the library could not read: RFC 9110 wants it ignored.
-      writable(request).ranges.clear();
-      writable(request).headers.erase("Accept-Encoding");
-      response.status = -1;
-      if (auto refused = handlers.admit(current.request))
-        send(std::move(*refused), response, true);
-      else
-        answer(response);
-      return Handled::Handled;
-    }
-    switch (response.status) {
-      case 413:
-        send(too_large(), response, true);
-        break;
-      case 414:
-        send_problem(ProblemCode::uri_too_long, "The URI is too long.", response, true);
-        break;
-      case 500:
-        send_problem(ProblemCode::internal, our_fault, response, true);
-        break;
-      default:
-        send_problem(ProblemCode::malformed_http, "This is not an HTTP request.", response, true);
-    }
-    return Handled::Handled;
+  /// Whether more of the body must come. Asks for it where the client wants to be asked (RFC 9110,
+  /// 10.1.1).
+  static bool awaits_body(Connection& connection) {
+    const Exchange& exchange = *connection.exchange();
+    if (exchange.body.whole()) return false;
+    if (exchange.head.expects_continue && !connection.has_unread())
+      connection.write_at_once("HTTP/1.1 100 Continue\r\n\r\n");
+    return connection.receive() == Connection::Receipt::begun;
   }
 
-  void set_up() {
-    http.set_pre_routing_handler(
-        [this](const auto& request, auto& response) { return route(request, response); });
-    const auto upload_handler = [this](const auto& request, auto& response, const auto& reader) {
-      upload(request, response, reader);
-    };
-    http.Post("/", httplib::Server::HandlerWithContentReader(upload_handler));
-    http.Put("/", httplib::Server::HandlerWithContentReader(upload_handler));
-    http.Patch("/", httplib::Server::HandlerWithContentReader(upload_handler));
-    http.Delete("/", httplib::Server::HandlerWithContentReader(upload_handler));
-    http.set_error_handler(httplib::Server::HandlerWithResponse(
-        [this](const auto& request, auto& response) { return error(request, response); }));
-    // Ours are caught before; without this handler the library puts the text into a header.
-    http.set_exception_handler([this](const auto&, auto& response, std::exception_ptr) {
-      send_problem(ProblemCode::internal, our_fault, response, true);
-    });
-    http.set_expect_100_continue_handler([this](const auto& request, auto& response) {
-      if (announced_body(request).length <= options.body_bytes) return 100;
-      return response.status = 413;
-    });
-    http.set_post_routing_handler([](const auto&, auto& response) {
-      // RFC 9110, 8.6: not with 204, and with 304 only the length that 200 would have had.
-      if (response.status == 204 || response.status == 304)
-        response.headers.erase("Content-Length");
-    });
-    http.set_logger([this](const auto&, const auto& response) {
-      const std::chrono::duration<double> took = steady_clock::now() - current.start;
-      const HttpRequest& request = current.request;
-      handlers.done({request.id, request.client, request.method, request.path, response.status,
-                     took.count(), http.connection().sent()});
-      current = {};
-    });
-    http.set_payload_max_length(longest_drain);
-    // For the Keep-Alive header alone: the lobby keeps the time, and counts no requests.
-    http.set_keep_alive_timeout(
-        std::chrono::ceil<std::chrono::seconds>(options.idle_timeout).count());
-    http.set_keep_alive_max_count(1'000'000);
-    http.set_tcp_nodelay(true);
-    http.set_socket_options([](int socket) {
-      // Not SO_REUSEPORT, the library's default: a second service would share the port in silence.
-      const int yes = 1;
-      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    });
+  HttpResponse answer_to(Exchange& exchange, bool urgent, bool last) {
+    BodyReader& body = exchange.body;
+    HttpRequest& request = exchange.request;
+    if (body.fault()) return problem_response(*body.fault());
+    if (!body.whole() && body.too_large()) return too_large();
+    if (!body.whole())
+      return problem(ProblemCode::malformed_http, "The body did not arrive whole.");
+    if (body.too_large()) return too_large();
+    const std::string coding = api::lower_case(request.header("content-encoding"));
+    if (!coding.empty() && coding != "identity")
+      return problem(ProblemCode::unsupported_media_type,
+                     "A body in a content coding is not taken.");
+    request.body = body.release();
+    Places::Place turn;
+    if (!urgent && !last) turn = turns.take();
+    if (!urgent && !turn)
+      return problem(ProblemCode::overloaded, "More is asked at once than can be answered.");
+    request.give_way = [&turn] { turn.reset(); };
+    HttpResponse answer = respond(request);
+    request.give_way = nullptr;
+    return answer;
+  }
+
+  HttpResponse respond(const HttpRequest& request) const {
+    try {
+      return handlers.respond(request);
+    } catch (const std::exception& error) {
+      spdlog::error("{} {}: {}", request.id, printable(request.path), error.what());
+      return problem(ProblemCode::internal, "The service failed on this request.");
+    }
+  }
+
+  Sent send(Connection& connection, HttpResponse answer) const {
+    const Exchange& exchange = *connection.exchange();
+    const int status = answer.status;
+    const Sent sent = write_answer(connection, std::move(answer), !exchange.body.whole(), stopping);
+    RequestRecord record = record_of(exchange);
+    record.status = status;
+    record.bytes = connection.sent();
+    handlers.done(record);
+    return sent;
+  }
+
+  void close_all() {
+    stopping = true;
+    lobby.close();
+    pool.close();
   }
 };
 
 HttpServer::HttpServer(HttpHandlers handlers, const HttpOptions& options)
-    : impl_(std::make_unique<Impl>(std::move(handlers), options)) {
-  impl_->set_up();
-  errno = 0;
-  if (options.port == 0)
-    impl_->port = impl_->http.bind_to_any_port(options.host);
-  else if (impl_->http.bind_to_port(options.host, options.port))
-    impl_->port = options.port;
-  if (impl_->port <= 0)
-    throw ListenError("cannot listen on " + options.host + ':' + std::to_string(options.port) +
-                      ": " + (errno ? std::strerror(errno) : "no such host"));
-  impl_->http.deepen_queue();
-}
+    : impl_(std::make_unique<Impl>(std::move(handlers), options)) {}
 
-HttpServer::~HttpServer() = default;
+HttpServer::~HttpServer() { impl_->close_all(); }
 
-int HttpServer::port() const { return impl_->port; }
+int HttpServer::port() const { return impl_->listener.port(); }
 
 void HttpServer::run() {
-  impl_->entered = true;
-  if (!impl_->stopped) impl_->http.listen_after_bind();
-  impl_->left = true;
+  impl_->running = true;
+  while (auto socket = impl_->listener.next([this] { return impl_->lobby.evict(); })) try {
+      impl_->enter(std::move(socket));
+    } catch (const std::exception& error) {
+      spdlog::error("a connection failed: {}", error.what());
+    }
+  impl_->close_all();
+  impl_->running = false;
 }
 
 void HttpServer::stop() {
-  impl_->stopped = true;
-  impl_->http.begin_stop();
-  if (!impl_->entered) return;  // run will see that it is stopped
-  // The library forgets a stop that comes before its loop has begun.
-  while (!impl_->http.is_running() && !impl_->left)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  impl_->http.stop();
+  impl_->stopping = true;
+  impl_->listener.stop();
 }
 
-bool HttpServer::is_running() const { return impl_->http.is_running(); }
+bool HttpServer::is_running() const { return impl_->running; }
 
 }  // namespace translucube::server

@@ -1,6 +1,8 @@
 #include "server/http/thread_pool.h"
 
-#include <system_error>
+#include <spdlog/spdlog.h>
+
+#include <exception>
 #include <utility>
 
 namespace translucube::server {
@@ -27,20 +29,34 @@ void ThreadPool::close() {
   }
 }
 
-void ThreadPool::run() {
-  while (std::unique_ptr<Connection> connection = next_()) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (--waiting_ == 0 && threads_.size() < most_ && !closed_) try {
-          add_thread();
-        } catch (const std::system_error&) {
-          // The machine has no more threads: those that are there go on.
-        }
-    }
-    serve_(std::move(connection));
-    const std::lock_guard lock(mutex_);
-    ++waiting_;
+/// A thread no longer waits. True if none waits now, and none can be added.
+bool ThreadPool::leave() {
+  const std::lock_guard lock(mutex_);
+  if (--waiting_ > 0) return false;
+  if (threads_.size() >= most_ || closed_) return true;
+  try {
+    add_thread();
+  } catch (const std::exception&) {
+    return true;  // the machine has no more threads or memory: those that are there go on
   }
+  return false;
+}
+
+void ThreadPool::come_back() {
+  const std::lock_guard lock(mutex_);
+  ++waiting_;
+}
+
+void ThreadPool::run() {
+  for (bool more = true; more;) try {
+      std::unique_ptr<Connection> connection = next_();
+      more = connection != nullptr;
+      if (!more) continue;
+      const Absence absence(*this);
+      serve_(std::move(connection), absence.last);
+    } catch (const std::exception& error) {
+      spdlog::error("a connection failed: {}", error.what());
+    }
 }
 
 }  // namespace translucube::server

@@ -42,7 +42,7 @@ ImageFile redeveloped_image(Darkroom& darkroom, const StoredResult& result,
   const std::string name = explorable_name(darkroom.artifacts, result).value_or(std::string());
   const auto film = darkroom.explorables.get(name, [&] {
     // One at a time: each takes much memory.
-    const std::lock_guard lock(darkroom.busy);
+    const std::lock_guard lock(darkroom.reading);
     if (name.empty() || !darkroom.artifacts.open_whole(result.content, name)) {
       darkroom.store.lose_result(result);
       throw FileError("the film of result " + result.content + " is lost");
@@ -62,6 +62,8 @@ std::optional<Result<ImageFile>> partial_image(Darkroom& darkroom, LiveFilm& liv
   if (!checked) return checked.problem();
   const auto redeveloped = redevelopment_of(request, query, darkroom.catalog);
   if (!redeveloped) return redeveloped.problem();
+  const Places::Place turn = darkroom.developing.take();
+  if (!turn) return Result<ImageFile>(busy_darkroom());
   Image image;
   std::uint32_t samples = 0;
   {

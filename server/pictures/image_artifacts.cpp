@@ -125,6 +125,10 @@ void remove_files(ArtifactStore& artifacts, const StoredResult& result) {
   artifacts.remove_if_empty(result.content);
 }
 
+Problem busy_darkroom() {
+  return {ProblemCode::overloaded, "Too many pictures are being made.", {}};
+}
+
 std::optional<StoredResult> whole_result(JobStore& store, ArtifactStore& artifacts,
                                          const std::string& content, Look look) {
   std::optional<StoredResult> result = store.find_result(content);
@@ -145,11 +149,12 @@ Problem gone() {
           {}};
 }
 
-/// The picture in a form that is kept, made if it is not there.
-std::shared_ptr<const OpenFile> derived_file(Darkroom& darkroom, const StoredResult& result,
-                                             const ImageForm& form, const std::string& request,
-                                             std::string& name) {
-  auto& [catalog, colors, store, artifacts, metrics, explorables, busy] = darkroom;
+/// The picture in a form that is kept, made if it is not there; a problem where too many are.
+Result<std::shared_ptr<const OpenFile>> derived_file(Darkroom& darkroom, const StoredResult& result,
+                                                     const ImageForm& form,
+                                                     const std::string& request,
+                                                     std::string& name) {
+  ArtifactStore& artifacts = darkroom.artifacts;
   const std::string& content = result.content;
   const std::string extension(row_of(form.format).extension);
   std::string stem = "derived-" + form_name(form);
@@ -161,14 +166,15 @@ std::shared_ptr<const OpenFile> derived_file(Darkroom& darkroom, const StoredRes
     return artifacts.open_whole(content, name);
   };
   if (auto file = known()) return file;
-  const std::lock_guard lock(busy);
+  const Places::Place turn = darkroom.making.take();
+  if (!turn) return busy_darkroom();
   if (auto file = known()) return file;  // another request has made it meanwhile
   const Image image = read_image(artifacts.path(content, result.image));
   name = write_picture(artifacts, content, stem, extension,
                        [&](const std::filesystem::path& temporary) {
-                         write_form(temporary, image, form, colors, request);
+                         write_form(temporary, image, form, darkroom.colors, request);
                        });
-  store.resize_result(content, artifacts.bytes(content));
+  darkroom.store.resize_result(content, artifacts.bytes(content));
   return artifacts.open(content, name);
 }
 
@@ -199,9 +205,18 @@ Result<ImageFile> image_artifact(Darkroom& darkroom, const std::string& content,
   std::string name = result->image;
   std::shared_ptr<const OpenFile> file;
   try {
-    if (*redeveloped) return redeveloped_image(darkroom, *result, **redeveloped, form);
-    file = as_stored ? darkroom.artifacts.open(content, name)
-                     : derived_file(darkroom, *result, form, request, name);
+    if (*redeveloped) {
+      const Places::Place turn = darkroom.developing.take();
+      if (!turn) return busy_darkroom();
+      return redeveloped_image(darkroom, *result, **redeveloped, form);
+    }
+    if (as_stored) {
+      file = darkroom.artifacts.open(content, name);
+    } else {
+      const auto derived = derived_file(darkroom, *result, form, request, name);
+      if (!derived) return derived.problem();
+      file = *derived;
+    }
   } catch (const ImageError& error) {
     // Its bytes are right: what failed is the reading.
     if (is_kept(darkroom, *result)) throw FileError(error.what());

@@ -4,6 +4,7 @@
 // for whoever asks. It reads the store, and forgets results there that are not whole; tasks, and
 // how light is traced, stay out.
 
+#include <chrono>
 #include <compare>
 #include <memory>
 #include <mutex>
@@ -16,6 +17,7 @@
 #include "picture/color.h"
 #include "picture/image_io.h"
 #include "server/base/metrics.h"
+#include "server/base/turns.h"
 #include "server/pictures/explorable_cache.h"
 #include "server/store/artifact_store.h"
 #include "server/store/job_store.h"
@@ -83,8 +85,15 @@ struct Darkroom {
   ArtifactStore& artifacts;
   Metrics& metrics;
   ExplorableCache& explorables;
-  std::mutex busy{};  ///< of those that are kept, one at a time: each takes much memory
+  // Each takes much memory and all of a core, and whoever makes one holds an answering thread: a
+  // few stand in line, more are told to come later.
+  Turns making{1, 3, std::chrono::seconds(5)};      ///< pictures that are kept
+  Turns developing{2, 4, std::chrono::seconds(5)};  ///< pictures that are not
+  std::mutex reading{};                             ///< explorable films, from the disk
 };
+
+/// What is answered where there is no turn.
+api::Problem busy_darkroom();
 
 /// The result, if its picture lies there whole; else the store forgets it, so that it is made again
 /// when it is asked for. A thorough look reads its bytes. Throws FileError where that cannot be

@@ -86,7 +86,8 @@ Result<ImageFile> sheet_artifact(Darkroom& darkroom, const api::SweepStatus& swe
   const auto& form = *checked;
   ArtifactStore& artifacts = darkroom.artifacts;
 
-  const std::lock_guard lock(darkroom.busy);
+  const Places::Place turn = darkroom.making.take();
+  if (!turn) return busy_darkroom();
   std::string name = artifacts
                          .hashed_name(sweep.id, stem_of(states_of(darkroom, sweep), form),
                                       row_of(form.format).extension)

@@ -42,6 +42,7 @@ JobService::JobService(const api::Catalog& catalog, const ServerConfig& config,
       live_films_([this] { changes_.tell(); }),
       explorables_(config.explorable_memory_bytes),
       darkroom_{catalog, colors, store, artifacts, metrics, explorables_},
+      pictures_(static_cast<std::size_t>(config.open_pictures), std::chrono::seconds(1)),
       memory_(memory_of_renders(config)) {
   folder_.check();
   janitor_.clean_up();

@@ -54,6 +54,12 @@ ToldText told(const Status& status) {
   return std::make_shared<const Told>(Told{status.state, std::move(json), std::move(etag)});
 }
 
+/// What tells cheaply whether a render or sweep has ended or changed.
+struct Moment {
+  api::JobState state = api::JobState::queued;
+  std::string version;  ///< another one after each change
+};
+
 struct RenderPage {
   std::vector<api::RenderStatus> renders;
   std::optional<std::string> next_cursor;
@@ -78,6 +84,7 @@ class JobService {
   api::Result<api::RenderStatus> get(const std::string& id) const;
   /// `get` as text, without a look into the store where the render has ended and was asked for.
   api::Result<ToldText> tell(const std::string& id);
+  api::Result<Moment> moment(const std::string& id);
   api::Result<RenderPage> list(const ListQuery& query) const;
   /// A render that has ended stays as it ended.
   api::Result<api::RenderStatus> cancel(const std::string& id);
@@ -93,7 +100,9 @@ class JobService {
   api::Result<SweepSubmission> submit_sweep(std::string_view document,
                                             const std::optional<std::string>& idempotency_key);
   api::Result<api::SweepStatus> get_sweep(const std::string& id) const;
-  api::Result<ToldText> tell_sweep(const std::string& id) const;
+  /// `get_sweep` as text, made once for all who ask until the sweep changes.
+  api::Result<ToldText> tell_sweep(const std::string& id);
+  api::Result<Moment> moment_of_sweep(const std::string& id) const;
   api::Result<SweepPage> list_sweeps(const ListQuery& query) const;
   api::Result<api::SweepStatus> cancel_sweep(const std::string& id);
   std::optional<api::Problem> remove_sweep(const std::string& id);
@@ -153,7 +162,9 @@ class JobService {
   // What is asked again and again. A render that has ended stays as it is until it is removed; of a
   // picture, it is seen once in a while that it still lies there, and is used.
   Recent<std::string, ToldText> ended_{4096};
-  Recent<std::pair<std::string, ImageQuery>, ImageFile> pictures_{256, std::chrono::seconds(1)};
+  Recent<std::pair<std::string, ImageQuery>, ImageFile> pictures_;
+  Recent<std::pair<std::string, std::string>, ToldText> told_sweeps_{8};  // by id and version
+  std::mutex telling_;
   Setbacks setbacks_;
   MemoryBudget memory_;
   std::atomic<std::uint64_t> room_ = 0;  ///< on the disk, for a job that is worked on

@@ -77,6 +77,12 @@ Result<ToldText> JobService::tell(const std::string& id) {
   return text;
 }
 
+Result<Moment> JobService::moment(const std::string& id) {
+  const auto text = tell(id);
+  if (!text) return text.problem();
+  return Moment{(*text)->state, (*text)->etag};
+}
+
 Result<RenderPage> JobService::list(const ListQuery& query) const {
   const auto filter = page_filter(query);
   if (!filter) return filter.problem();
@@ -137,6 +143,8 @@ Result<ImageFile> JobService::image(const std::string& id, const ImageQuery& que
   // Removed while it was read: then that is the answer.
   if (!made && made.problem().code == ProblemCode::gone && !store_.find(id))
     return no_such_render();
+  // Perhaps for want of a descriptor: those that are held open give way.
+  if (!made && made.problem().code == ProblemCode::storage_failure) pictures_.forget();
   if (made && made->file->size() <= largest_at_hand) pictures_.keep({id, query}, *made, now);
   return made;
 }

@@ -71,10 +71,28 @@ Result<api::SweepStatus> JobService::get_sweep(const std::string& id) const {
   });
 }
 
-Result<ToldText> JobService::tell_sweep(const std::string& id) const {
+Result<ToldText> JobService::tell_sweep(const std::string& id) {
+  const auto moment = moment_of_sweep(id);
+  if (!moment) return moment.problem();
+  // One at a time: a sweep of many points is long, and who waits for this finds it told.
+  const std::lock_guard lock(telling_);
+  if (auto known = told_sweeps_.find({id, moment->version})) return std::move(*known);
+  const auto now = told_sweeps_.now();
   const auto status = get_sweep(id);
   if (!status) return status.problem();
-  return told(*status);
+  ToldText text = told(*status);
+  told_sweeps_.keep({id, moment->version}, text, now);
+  return text;
+}
+
+Result<Moment> JobService::moment_of_sweep(const std::string& id) const {
+  return guarded([&]() -> Result<Moment> {
+    // The event first: what comes after it is seen next time.
+    const std::uint64_t event = store_.last_event(id);
+    const std::optional<StoredSweep> sweep = store_.find_sweep(id);
+    if (!sweep) return no_such_sweep();
+    return Moment{sweep->state, std::to_string(event)};
+  });
 }
 
 Result<SweepPage> JobService::list_sweeps(const ListQuery& query) const {

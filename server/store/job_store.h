@@ -99,6 +99,8 @@ class JobStore {
   /// Those of a render or a sweep after `number`, in their order; nothing for what is not there.
   virtual std::vector<Event> events_after(const std::string& subject,
                                           std::uint64_t number) const = 0;
+  /// The number of the last event of a render or a sweep, 0 where there is none.
+  virtual std::uint64_t last_event(const std::string& subject) const = 0;
   virtual QueueGauges gauges() const = 0;
   virtual OpenNeeds open_needs() const = 0;
   virtual void check_writable() = 0;

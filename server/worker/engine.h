@@ -11,7 +11,7 @@ namespace translucube::server {
 
 /// A scene that is ready to be traced, on this machine and by any number of threads.
 struct TracedScene {
-  std::function<std::optional<PassFilm>(const Pass&, int threads, std::stop_token)> trace;
+  std::function<std::optional<PassFilm>(const Pass&, int threads, const Patience&)> trace;
   std::function<RenderStats(const Film&, double seconds, int threads)> stats;
   std::optional<ExplorableBasis> explorable;  ///< of a scene whose film keeps the path lengths
 };

@@ -117,7 +117,7 @@ TEST(Stats, HaveNullForWhatIsNotFinite) {
   EXPECT_EQ(json::parse(stats_json(stats)), json::parse(R"({
     "samples":64,"seconds":1.25,"cpu_seconds":null,"threads":2,"relative_error":null,
     "transport":"walk","traced_images":1,"nan_samples":1152921504606846976,
-    "truncated_energy":1e-9})"));
+    "truncated_energy":1e-9,"camera_inside":false})"));
 }
 
 TEST(Listings, TellWhatARequestMayName) {

@@ -67,8 +67,11 @@ TEST(Request, WidthsThatWouldWrapAreRefused) {
     EXPECT_EQ(fault_at("/image/width", image(width, "1")), "must be an integer from 1 to 16777216");
 }
 
-TEST(Request, IntegersAreWrittenAsIntegers) {
-  for (const char* width : {"2.7", "512.0", "1e2", "\"512\"", "true", "null", "[512]"})
+TEST(Request, IntegersAreNumbersWithoutAFraction) {
+  for (const char* width : {"100", "100.0", "1e2", "0.1e3", "10000e-2"})
+    EXPECT_EQ(accepted(image(width, "1")).width, 100) << width;
+  for (const char* width : {"2.7", "1e300", "-512.0", "100.00001", "5e-1", "\"512\"", "true",
+                            "null", "[512]"})
     fault_at("/image/width", image(width, "1"));
 }
 
@@ -108,7 +111,10 @@ TEST(Request, SeedsAreExactInEveryJsonReader) {
   EXPECT_EQ(accepted(request_with(R"("seed":9007199254740991)")).seed, 9007199254740991u);
   fault_at("/seed", request_with(R"("seed":9007199254740992)"));
   fault_at("/seed", request_with(R"("seed":-1)"));
-  fault_at("/seed", request_with(R"("seed":1.0)"));
+  EXPECT_EQ(accepted(request_with(R"("seed":1.0)")).seed, 1u);
+  EXPECT_EQ(accepted(request_with(R"("seed":9.007199254740991e15)")).seed, 9007199254740991u);
+  for (const char* seed : {"1.5", "-1.0", "9007199254740992.0", "1e16", "1.8446744073709552e19"})
+    fault_at("/seed", request_with(R"("seed":)" + std::string(seed)));
 }
 
 TEST(Request, PartsThatAreNotServedYetAreReadFirst) {

@@ -1,4 +1,4 @@
-// In the renderer's place: a mesh that a request names is the business of Assimp, and would bring
+// In the renderer's place: a mesh that a request names is read in another process, and would bring
 // the whole renderer with it.
 
 #include "renderer/scene/spec.h"

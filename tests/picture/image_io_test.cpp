@@ -17,9 +17,8 @@
 #include <thread>
 #include <vector>
 
-#include "tests/support/repository.h"
-
 #include "picture/version.h"
+#include "tests/support/repository.h"
 
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>

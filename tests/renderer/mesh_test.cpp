@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "renderer/shape/file/mesh_file.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scenes.h"
 
@@ -74,8 +75,7 @@ TEST(Mesh, FromObjAndPlyFilesIsTheSameBody) {
   write_obj(mesh, folder / "ball.obj");
   write_ply(mesh, folder / "ball.ply");
   for (const char* name : {"ball.obj", "ball.ply"}) {
-    TriangleMesh read = read_mesh(folder / name);
-    close_mesh(read);
+    const TriangleMesh read = read_mesh(folder / name);
     EXPECT_EQ(read.triangles.size(), mesh.triangles.size()) << name;
     EXPECT_NEAR(volume(read), volume(mesh), 1e-5) << name;
     EXPECT_NO_THROW(check_mesh(folder / name));

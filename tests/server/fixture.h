@@ -4,6 +4,7 @@
 // told to, and their bits say which pass, seed and pixel they are.
 
 #include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
 
 #include <atomic>
 #include <chrono>
@@ -28,6 +29,10 @@
 #include "tests/support/repository.h"
 
 namespace translucube::server::test {
+
+/// Made before any thread is, as main() does: spdlog is not instrumented, so ThreadSanitizer does not
+/// see that its registry is made once, by whoever logs first.
+inline const std::shared_ptr<spdlog::logger> made_before_threads = spdlog::default_logger();
 
 inline const std::string config_path = in_repository("config/service.json");
 
@@ -63,8 +68,8 @@ struct FakeRenderer {
     before_build(spec);
     const Picture picture{spec.width, spec.height,
                           1 + static_cast<int>(spec.more_absorptions.size()), spec.seed};
-    return {[this, picture](const Pass& pass, int, std::stop_token stop) {
-              return trace(picture, pass, stop);
+    return {[this, picture](const Pass& pass, int, const Patience& patience) {
+              return trace(picture, pass, patience.stop);
             },
             stats_of_fake, std::nullopt};
   }

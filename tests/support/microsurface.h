@@ -47,7 +47,7 @@ inline LobeValue single_scattering(const Ggx& ggx, double eta, Vec3 wo, Vec3 wi)
 
 /// f_basic (interface.h) with all orders of scattering: what the renderer's crossings find of a
 /// light from wi alone, so dense that none of it is left to chance.
-inline Estimate bsdf(const Ggx& ggx, double eta, Vec3 wo, Vec3 wi, std::uint64_t key,
+inline Measured bsdf(const Ggx& ggx, double eta, Vec3 wo, Vec3 wi, std::uint64_t key,
                      int walks = 400'000) {
   constexpr float density = 1e9f;
   LightList light;

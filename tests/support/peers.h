@@ -43,15 +43,15 @@ inline SceneSpec peer_scene(const Coefficients& coefficients, int size, std::uin
 }
 
 /// Mean of each channel over all pixels.
-inline std::array<Estimate, 3> channel_means(const Film& film) {
+inline std::array<Measured, 3> channel_means(const Film& film) {
   const Image image = develop(film), spread = variance(film);
   const double n = static_cast<double>(image.pixels.size()) / 3;
-  std::array<Estimate, 3> means{};
+  std::array<Measured, 3> means{};
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     means[i % 3].mean += image.pixels[i] / n;
     means[i % 3].standard_error += spread.pixels[i];
   }
-  for (Estimate& e : means) e.standard_error = std::sqrt(e.standard_error) / n;
+  for (Measured& e : means) e.standard_error = std::sqrt(e.standard_error) / n;
   return means;
 }
 

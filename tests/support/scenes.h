@@ -13,14 +13,14 @@ namespace translucube::test {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Estimate {
+struct Measured {
   double mean = 0, standard_error = 0;
 };
 
 /// Mean of one lane over the image and channels; the standard error is lane 0's, so ask it of lane
 /// 0.
-inline Estimate image_mean(const Film& film, int lane = 0) {
-  Estimate e;
+inline Measured image_mean(const Film& film, int lane = 0) {
+  Measured e;
   const Image image = develop(film, lane);
   const double n = static_cast<double>(image.pixels.size());
   for (const float p : image.pixels) e.mean += p / n;

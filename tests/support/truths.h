@@ -26,7 +26,7 @@ inline constexpr double disc = std::numbers::pi / 4;
 
 /// Mean over the disc of the sphere, `background` being the pixel beside it: parallel light over
 /// the disc is diffuse light over the surface.
-inline Estimate over_the_disc(const Estimate& image, double background) {
+inline Measured over_the_disc(const Measured& image, double background) {
   return {(image.mean - (1 - disc) * background) / disc, image.standard_error / disc};
 }
 
@@ -38,7 +38,7 @@ inline Scene path_scene(AnyShape shape, const Material& m, std::uint64_t seed = 
   return scene;
 }
 /// Its mean for each ray that meets the shape.
-inline Estimate mean_path_of(AnyShape shape, const Material& m, std::uint32_t samples,
+inline Measured mean_path_of(AnyShape shape, const Material& m, std::uint32_t samples,
                              std::uint64_t seed = 1, int threads = 0, int size = 64) {
   const Scene scene = path_scene(std::move(shape), m, seed, size);
   return over_the_disc(image_mean(trace(scene, samples, threads)), 0);
@@ -54,7 +54,7 @@ inline Scene lit_slab_scene(const Material& m, float sigma_a, bool above, std::u
 }
 /// Its reflectance and transmittance at normal incidence.
 struct LitSlab {
-  Estimate reflectance, transmittance;
+  Measured reflectance, transmittance;
 };
 inline LitSlab lit_slab(const Material& m, float sigma_a, std::uint32_t samples,
                         std::uint64_t seed = 1, int threads = 0) {
@@ -67,7 +67,7 @@ inline LitSlab lit_slab(const Material& m, float sigma_a, std::uint32_t samples,
 
 /// A walk of diffuse light in a unit sphere, apart from the transport: one particle at a time from
 /// the north pole, which stands for every point of the surface.
-struct SphereWalk {
+struct ReferenceWalk {
   Medium medium;
   double ior = 1;
   double sigma_a = 0;
@@ -78,7 +78,7 @@ struct SphereWalk {
   } steps = Steps::large;
 
   /// Mean share of the light that leaves the sphere again, reflection at the entrance included.
-  Estimate leaving(int walks, std::uint64_t key) const;
+  Measured leaving(int walks, std::uint64_t key) const;
 
  private:
   struct Entered {
@@ -100,12 +100,12 @@ struct SphereWalk {
   }
 };
 
-inline Estimate estimate_of(double sum, double squares, int n) {
+inline Measured estimate_of(double sum, double squares, int n) {
   const double mean = sum / n;
   return {mean, std::sqrt(std::fmax(0.0, squares / n - mean * mean) / n)};
 }
 
-inline Estimate SphereWalk::leaving(int walks, std::uint64_t key) const {
+inline Measured ReferenceWalk::leaving(int walks, std::uint64_t key) const {
   const bool absorbs = steps == Steps::absorbing;
   const Medium flights{medium.sigma_s + (absorbs ? sigma_a : 0), medium.g};
   const double albedo = medium.sigma_s / flights.sigma_s;

@@ -136,7 +136,7 @@ TEST(DipoleSampling, OnAFlatSurfaceBringsTheClosedForm) {
       }
       const double expected =
           1 - let_in + let_in * base.entering() * diffuse_reflectance(albedo, 1.5);
-      const Estimate e = image_mean(trace(scene, 1024));
+      const Measured e = image_mean(trace(scene, 1024));
       EXPECT_NEAR(e.mean, expected, 4 * e.standard_error + 1e-3)
           << albedo << " alpha " << alpha << " +- " << e.standard_error;
       EXPECT_LT(e.standard_error, 3e-3);
@@ -152,7 +152,7 @@ TEST(DipoleSampling, OfATessellatedSphereIsThatOfTheSphere) {
           mesh = dipole_alone(build_mesh(icosphere(5)).mesh, m, 2);
     look_from_afar(sphere, 0.5, 16);
     look_from_afar(mesh, 0.5, 16);
-    const Estimate a = image_mean(trace(sphere, 1024)), b = image_mean(trace(mesh, 1024));
+    const Measured a = image_mean(trace(sphere, 1024)), b = image_mean(trace(mesh, 1024));
     EXPECT_NEAR(a.mean, b.mean, 4 * std::hypot(a.standard_error, b.standard_error) + 1e-3)
         << sigma_s;
   }
@@ -171,7 +171,7 @@ TEST(DipoleSampling, OfAPlateSeesBothItsFaces) {
     const double r = std::exp((i + 0.5) / n * std::log(reach));
     both += 2 * pi * r * r * dipole.radii.reflectance(r) * std::log(reach) / n;
   }
-  const Estimate e = image_mean(trace(scene, 4096));
+  const Measured e = image_mean(trace(scene, 4096));
   const double f = fresnel(1, 1.5);
   EXPECT_NEAR(e.mean, f + (1 - f) * dipole.base.entering() * both, 4 * e.standard_error + 1e-4);
 }
@@ -208,20 +208,20 @@ TEST(DipoleModel, OfAnEmptyOrBlackBodyIsTheTransport) {
 
 TEST(DipoleModel, HasNoJumpAtTheEmptyBody) {
   SceneSpec spec = sphere_spec(1e-7, 0.4, 0.3);
-  const Estimate thin = image_mean(traced(spec, 256));
+  const Measured thin = image_mean(traced(spec, 256));
   spec.material.coefficients.sigma_s = 0;
-  const Estimate empty = image_mean(traced(spec, 256));
+  const Measured empty = image_mean(traced(spec, 256));
   EXPECT_NEAR(thin.mean, empty.mean, 4 * std::hypot(thin.standard_error, empty.standard_error));
 }
 
 TEST(DipoleModel, EndsInTheOpaquePlastic) {
   for (const double roughness : {0.0, 0.5}) {
     SceneSpec spec = sphere_spec(1, 0, roughness);
-    const Estimate dipole = image_mean(traced(spec, 512)),
+    const Measured dipole = image_mean(traced(spec, 512)),
                    exact = image_mean(traced(exactly(spec), 512));
     EXPECT_NEAR(dipole.mean, exact.mean,
                 4 * std::hypot(dipole.standard_error, exact.standard_error));
-    const Estimate almost = image_mean(traced(sphere_spec(0.9999, 0, roughness), 512));
+    const Measured almost = image_mean(traced(sphere_spec(0.9999, 0, roughness), 512));
     EXPECT_NEAR(almost.mean / dipole.mean, 1, 5e-3);
   }
 }
@@ -293,7 +293,7 @@ TEST(DipoleModel, ReportsItsErrorAgainstTheTransport) {
     Scene furnace = *build_scene(spec);
     furnace.environment = UniformEnvironment{};
     look_from_afar(furnace, 0.7, 24);
-    const Estimate gained = image_mean(trace(furnace, 256));
+    const Measured gained = image_mean(trace(furnace, 256));
     std::printf("  %4.2f   %.4f +- %.4f   %.3f\n", s, gained.mean, gained.standard_error, ratio);
     EXPECT_TRUE(std::isfinite(gained.mean) && std::isfinite(ratio));
     if (s == 0 || s == 1) {

@@ -85,14 +85,14 @@ class Replicates {
   }
 
   int count() const { return count_; }
-  Estimate image() const { return at(cells); }
-  Estimate at(int cell) const {
+  Measured image() const { return at(cells); }
+  Measured at(int cell) const {
     return {mean_[cell], std::sqrt(m2_[cell] / (count_ - 1.0) / count_)};
   }
   /// The probability that a true mean of 1 looks as far off as this (Student's t by Wallace 1959,
   /// "Bounds on Normal Approximations to Student's and the Chi-Square Distributions").
   double p_value(int cell) const {
-    const Estimate e = at(cell);
+    const Measured e = at(cell);
     // If `off` came in parts of the largest weight that roulette gives (1/2), it would be a Poisson
     // count of off x samples / part events, and vary accordingly.
     constexpr double part = 0.5;
@@ -138,7 +138,7 @@ Replicates trace_grid_point(const Scene& scene, const Effort& effort, double& cp
 double expect_nothing_there(const Point& point, const Effort& effort, double tolerance, int tests) {
   double cpu_seconds = 0;
   const Replicates seen = trace_grid_point(furnace(point), effort, cpu_seconds);
-  const Estimate image = seen.image();
+  const Measured image = seen.image();
   EXPECT_NEAR(image.mean, 1, tolerance) << point.name() << " +- " << image.standard_error;
   EXPECT_LE(image.standard_error, effort.standard_error) << point.name();
   for (int cell = 0; cell < cells; ++cell)
@@ -176,7 +176,7 @@ TEST(FurnaceGrid, LightThatEntersAKnotAgainAndAgainIsNotLost) {
   Scene scene = body(build_mesh(knot(240, 24)).mesh, material(1.5, 0, 0.03), 9);
   scene.width = scene.height = pixels;
   scene.camera = Camera({0.3, 0.2, 3}, {0.3, 0.2, 0}, {0, 1, 0}, 12, pixels, pixels);
-  const Estimate e = image_mean(trace(scene, 208));
+  const Measured e = image_mean(trace(scene, 208));
   EXPECT_NEAR(e.mean, 1, 4 * e.standard_error);
   EXPECT_LT(e.standard_error, 3.5e-5);
 }

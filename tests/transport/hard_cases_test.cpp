@@ -23,7 +23,7 @@ TEST_P(HardCases, IsFiniteUnbiasedAndBoundedInTime) {
   const auto start = std::chrono::steady_clock::now();
   const Film film = trace(*scene, c.samples);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  const Estimate e = image_mean(film);
+  const Measured e = image_mean(film);
   EXPECT_EQ(film.counters.nan_samples, 0u);
   EXPECT_EQ(film.counters.truncated_energy, 0);
   EXPECT_NEAR(e.mean, 1, std::fmax(1e-3, 4 * e.standard_error));
@@ -43,7 +43,7 @@ TEST(HardCase, ASunOf34000StaysFiniteAndItsMeanIsThatOfAnotherSeed) {
     spec.seed = 2;
     const Film second = trace(*build_scene(spec), 256);
     EXPECT_EQ(first.counters.nan_samples + second.counters.nan_samples, 0u);
-    const Estimate a = image_mean(first), b = image_mean(second);
+    const Measured a = image_mean(first), b = image_mean(second);
     EXPECT_NEAR(a.mean, b.mean, 5 * std::hypot(a.standard_error, b.standard_error)) << sigma_s;
   }
 }
@@ -67,7 +67,7 @@ TEST(HardCase, ACameraInsideTheBodySeesTheFurnaceToo) {
     SceneSpec spec = hard_furnace(1, alpha, 5, 1.5, 0);
     spec.camera.position_mm = {0.2, 0.1, 0.3};
     spec.camera.vfov_deg = 90;
-    const Estimate e = image_mean(trace(*build_scene(spec), 512));
+    const Measured e = image_mean(trace(*build_scene(spec), 512));
     EXPECT_NEAR(e.mean, 1, 3 * e.standard_error + 1e-4) << alpha;
     EXPECT_LT(e.standard_error, 3e-3);
   }

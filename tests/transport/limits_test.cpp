@@ -16,7 +16,7 @@ namespace {
 struct Look {
   double absorption = 0, alpha = 0, sigma_s = 0, ior = 1.5;
 };
-Estimate look(const Look& l, std::uint32_t samples = 512) {
+Measured look(const Look& l, std::uint32_t samples = 512) {
   Material m = material(l.ior, l.alpha, l.sigma_s);
   m.coefficients.sigma_a_peak = l.absorption;
   m.absorber = RgbAbsorber{{1, 1, 1}};
@@ -27,7 +27,7 @@ Estimate look(const Look& l, std::uint32_t samples = 512) {
   return image_mean(trace(scene, samples));
 }
 
-void expect_near(const Estimate& a, const Estimate& b, double step, const std::string& what) {
+void expect_near(const Measured& a, const Measured& b, double step, const std::string& what) {
   const double error = std::hypot(a.standard_error, b.standard_error);
   EXPECT_NEAR(a.mean, b.mean, step + 4 * error) << what;
   EXPECT_LT(error, 5e-3) << what;
@@ -60,7 +60,7 @@ TEST(Limit, OfNoStepOfTheIndexIsNothingThere) {
 }
 
 TEST(Limit, OfTheFirstStepOffEveryAxisIsTheAxis) {
-  const Estimate clear = look({});
+  const Measured clear = look({});
   expect_near(look({1e-4, 0, 0}), clear, 1e-3, "absorption");
   expect_near(look({0, 1e-4, 0}), clear, 1e-3, "roughness");
   expect_near(look({0, 0, 1e-4}), clear, 1e-3, "scattering");

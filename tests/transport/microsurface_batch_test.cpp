@@ -30,7 +30,7 @@ Environment mottled_light() {
 
 /// The light that reaches rays along -wo by reflection at, or through, an interface with normal +z:
 /// by escapes alone, or weighted against light that was looked for.
-Estimate light_of(double alpha, double eta, bool from_outside, Vec3 wo, std::uint32_t lights_each) {
+Measured light_of(double alpha, double eta, bool from_outside, Vec3 wo, std::uint32_t lights_each) {
   const Environment environment = mottled_light();
   const auto& image = std::get<ImageEnvironment>(environment);
   const BatchInterface interface { float(alpha), float(eta), from_outside };
@@ -68,9 +68,9 @@ TEST(MicrosurfaceBatch, LightLookedForAndLightFoundAddUp) {
       for (const bool from_outside : {true, false})
         for (const double mu : {0.95, 0.4}) {
           const Vec3 wo{std::sqrt(1 - mu * mu), 0, mu};
-          const Estimate found = light_of(alpha, eta, from_outside, wo, 0);
+          const Measured found = light_of(alpha, eta, from_outside, wo, 0);
           for (const std::uint32_t lights_each : {1u, 8u}) {
-            const Estimate both = light_of(alpha, eta, from_outside, wo, lights_each);
+            const Measured both = light_of(alpha, eta, from_outside, wo, lights_each);
             EXPECT_NEAR(both.mean, found.mean,
                         4.5 * std::hypot(both.standard_error, found.standard_error))
                 << "alpha " << alpha << " eta " << eta << " mu " << mu << " lights " << lights_each;

@@ -22,7 +22,7 @@ struct PeerMeans {
 void expect_means_of(const PeerMeans& peer, std::uint32_t samples, double largest_error) {
   SceneSpec spec = peer_scene({0, peer.alpha, 0}, 64, 1);
   spec.material.multiple_scattering = false;
-  const std::array<Estimate, 3> means = channel_means(trace(*build_scene(spec), samples));
+  const std::array<Measured, 3> means = channel_means(trace(*build_scene(spec), samples));
   for (std::size_t c = 0; c < 3; ++c) {
     const auto [mean, error] = means[c];
     std::printf("alpha %g channel %zu: %.5f +- %.5f, peers %.4f\n", peer.alpha, c, mean, error,
@@ -118,7 +118,7 @@ Share kept_by_a_sphere(double alpha, double ior, int paths) {
 TEST(SingleScattering, DiffersFromMultipleByTheEnergyThatItLoses) {
   constexpr double covered = std::numbers::pi / 4;  // by the sphere, of the image
   for (const double alpha : {0.05, 0.1, 0.25, 0.5, 1.0}) {
-    Estimate means[2];
+    Measured means[2];
     for (const bool multiple : {false, true}) {
       Scene scene = body(Sphere{}, material(1.5, alpha, 0));
       std::get<RoughInterface>(scene.interface).multiple_scattering = multiple;

@@ -20,7 +20,7 @@ Material pigment(double ior, double alpha, double sigma_s, double ratio) {
 }
 
 /// Mean over the body of a sphere in the white furnace.
-Estimate mean_radiance(const Material& m, std::uint32_t samples) {
+Measured mean_radiance(const Material& m, std::uint32_t samples) {
   Scene scene = body(Sphere{}, m);
   scene.lanes = {make_lane(m, scene.interior, 1.0)};
   look_from_afar(scene, 0.7, 32);
@@ -33,15 +33,15 @@ TEST(Pigment, OfInfiniteDensityIsGiovanellisHalfSpace) {
   Scene scene = body(Sphere{}, m);
   scene.lanes = {make_lane(m, scene.interior, 1.0)};
   look_from_afar(scene, 0.01, 32);
-  const Estimate e = image_mean(trace(scene, 2048));
+  const Measured e = image_mean(trace(scene, 2048));
   EXPECT_NEAR(e.mean / 0.26, 1, 5e-3) << e.standard_error;
   EXPECT_LT(e.standard_error / 0.26, 1.7e-3);
 }
 
 TEST(Pigment, TendsToItsDenseLimitWithoutAJump) {
   for (const double alpha : {0.0, 0.3}) {
-    const Estimate limit = mean_radiance(pigment(1.5, alpha, infinity, 0.05), 512);
-    const Estimate dense = mean_radiance(pigment(1.5, alpha, 3000, 0.05), 512);
+    const Measured limit = mean_radiance(pigment(1.5, alpha, infinity, 0.05), 512);
+    const Measured dense = mean_radiance(pigment(1.5, alpha, 3000, 0.05), 512);
     EXPECT_NEAR(dense.mean, limit.mean,
                 4 * std::hypot(dense.standard_error, limit.standard_error) + 1e-3);
     EXPECT_GT(limit.mean, 0.2);
@@ -50,7 +50,7 @@ TEST(Pigment, TendsToItsDenseLimitWithoutAJump) {
 }
 
 TEST(Pigment, ThatDoesNotAbsorbIsWhite) {
-  const Estimate e = mean_radiance(pigment(1.5, 0, infinity, 0), 512);
+  const Measured e = mean_radiance(pigment(1.5, 0, infinity, 0), 512);
   EXPECT_NEAR(e.mean, 1, 1e-3) << e.standard_error;
 }
 

@@ -11,17 +11,17 @@
 namespace translucube::test {
 namespace {
 
-struct Measured {
+struct SlabBody {
   slab::Channels channels;
   slab::Body body;
 
-  explicit Measured(const Material& m)
+  explicit SlabBody(const Material& m)
       : channels(slab::make_channels(m, 1)),
         body{make_interface(m), make_interior(m, 1), channels.sigma_a[0]} {}
 };
 
 /// By walks without jumps, of so many histories.
-slab::Readings walked(const Measured& b, slab::Incidence incidence, std::uint64_t histories) {
+slab::Readings walked(const SlabBody& b, slab::Incidence incidence, std::uint64_t histories) {
   constexpr int replicates = 32;
   const double sigma_a = b.channels.sigma_a[0];
   slab::Readings readings;
@@ -44,7 +44,7 @@ Material grey(double ior, double alpha, double sigma_s, double sigma_a, double g
 
 /// z of the totals, of haze and of clarity.
 void expect_walks(const Material& m, std::uint64_t histories) {
-  const Measured b(m);
+  const SlabBody b(m);
   const auto added = add_layers(b.body, b.channels, 5e-4, 1, 0);
   ASSERT_TRUE(added);
   const auto compare = [&](const char* what, double a, double a_error, double w, double w_error) {
@@ -83,7 +83,7 @@ TEST(LongAdding, AgreesWithWalks) {
 
 TEST(Adding, LeavesToWalksWhatItDoesNotResolve) {
   const auto adds = [](const Material& m, double error) {
-    const Measured b(m);
+    const SlabBody b(m);
     return add_layers(b.body, b.channels, error, 1, 0).has_value();
   };
   EXPECT_TRUE(adds(grey(1.5, 0, 10, 0.1, 0), 1e-3));

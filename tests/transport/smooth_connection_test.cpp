@@ -309,38 +309,6 @@ TEST(SmoothExits, InstructionSetsChooseAndDrawTheSame) {
   }
 }
 
-/// White from everywhere, but as an image: light is looked for all the same.
-ImageEnvironment white_image() {
-  Image image(16, 8);
-  for (float& p : image.pixels) p = 1;
-  return ImageEnvironment(image, 0, 1);
-}
-
-TEST(SmoothConnections, OfAWhiteImageKeepTheFurnace) {
-  for (const double sigma_s : {0.2, 30.0})
-    for (const double ior : {1.0, 1.5, 2.5}) {
-      Scene scene = body(Sphere{}, material(ior, 0, sigma_s));
-      scene.environment = white_image();
-      look_from_afar(scene, 0.7, 32);
-      const Film film = trace(scene, 256);
-      const Estimate e = image_mean(film);
-      EXPECT_GT(film.counters.light_samples, 0u);
-      EXPECT_NEAR(e.mean, 1, 3 * e.standard_error) << "sigma_s " << sigma_s << " ior " << ior;
-      EXPECT_LT(e.standard_error, 1.5e-3);
-    }
-}
-
-TEST(SmoothConnections, OfForwardAndBackwardScatteringKeepTheFurnace) {
-  for (const double g : {-0.6, 0.8}) {
-    Scene scene = body(Sphere{}, material(1.5, 0, 4, g));
-    scene.environment = white_image();
-    look_from_afar(scene, 0.7, 32);
-    const Estimate e = image_mean(trace(scene, 256));
-    EXPECT_NEAR(e.mean, 1, 3 * e.standard_error) << "g " << g;
-    EXPECT_LT(e.standard_error, 1.5e-3);
-  }
-}
-
 /// Light from one side, so that near and far ways out differ, seen through a half-open lane.
 Scene half_lit(double sigma_s, double ior, float sigma_a) {
   Scene scene = body(Sphere{}, material(ior, 0, sigma_s));
@@ -358,7 +326,7 @@ TEST(SmoothConnections, FindWhatTheWalkAloneFinds) {
     const Film walked = trace(plain, 1024);
     EXPECT_GT(connected.counters.light_samples, 0u);
     EXPECT_EQ(walked.counters.light_samples, 0u);
-    const Estimate a = image_mean(connected), b = image_mean(walked);
+    const Measured a = image_mean(connected), b = image_mean(walked);
     EXPECT_NEAR(a.mean, b.mean, 4 * std::hypot(a.standard_error, b.standard_error)) << sigma_s;
     EXPECT_LT(std::hypot(a.standard_error, b.standard_error), 0.015 * b.mean) << sigma_s;
   }

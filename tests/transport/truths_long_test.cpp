@@ -14,12 +14,12 @@ namespace {
 constexpr double tolerance = 2e-3, largest_error = 5e-4;  // relative
 
 /// Traces until the image's mean is known to a relative standard error.
-Estimate known_mean(Scene scene, double expected) {
-  Estimate pooled;
+Measured known_mean(Scene scene, double expected) {
+  Measured pooled;
   double weight = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     scene.seed = seed;
-    const Estimate e = image_mean(trace(scene, 512));
+    const Measured e = image_mean(trace(scene, 512));
     pooled.mean += (e.mean - pooled.mean) / seed;
     weight += e.standard_error * e.standard_error;
     pooled.standard_error = std::sqrt(weight) / seed;
@@ -29,7 +29,7 @@ Estimate known_mean(Scene scene, double expected) {
 }
 
 void expect_truth(const Scene& scene, double expected, const std::string& what) {
-  const Estimate e = known_mean(scene, expected);
+  const Measured e = known_mean(scene, expected);
   EXPECT_NEAR(e.mean / expected, 1, tolerance) << what << " +- " << e.standard_error / expected;
   EXPECT_LE(e.standard_error / expected, largest_error) << what;
 }

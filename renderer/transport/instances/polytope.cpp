@@ -1,4 +1,4 @@
 #include "renderer/transport/tracer.h"
 
 template void translucube::trace_body(const Polytope&, const Scene&, const SampleRange&, Tile&,
-                                      std::string*);
+                                      const Patience&, std::string*);

@@ -75,6 +75,14 @@ class SphereWalk {
   /// The next collision and flight of all.
   void advance(const WalkMedium& medium);
 
+  /// Forgets the walks under way, whose slots `tell` is told.
+  template <class Tell>
+  void abandon(Tell&& tell) {
+    for (std::size_t i = 0; i < walking_.size; ++i)
+      tell(static_cast<std::uint32_t>(walking_.slot[i]));
+    walking_.size = 0;
+  }
+
   const Vertices& vertices() const { return vertices_; }
   const Arrivals& arrivals() const { return arrivals_; }
 

@@ -68,6 +68,7 @@ class SqliteJobStore final : public JobStore {
   // states.cpp
   void cancel(const std::string& id) override;
   std::vector<Event> events_after(const std::string& subject, std::uint64_t number) const override;
+  std::uint64_t last_event(const std::string& subject) const override;
   QueueGauges gauges() const override;
   OpenNeeds open_needs() const override;
 

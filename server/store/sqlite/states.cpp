@@ -112,6 +112,12 @@ std::vector<Event> SqliteJobStore::events_after(const std::string& subject,
   return events;
 }
 
+std::uint64_t SqliteJobStore::last_event(const std::string& subject) const {
+  const Lock lock(reader_.mutex);
+  Statement statement(reader_, "SELECT COALESCE(MAX(number), 0) FROM events WHERE subject = ?");
+  return statement.bind(subject).step() ? static_cast<std::uint64_t>(statement.integer(0)) : 0;
+}
+
 OpenNeeds SqliteJobStore::open_needs() const {
   const Lock lock(reader_.mutex);
   Statement sum(reader_,

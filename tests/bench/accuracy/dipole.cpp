@@ -45,7 +45,7 @@ Table dipole(Run& run) {
     };
     const RenderResult model = rendered(true, false), exact = rendered(false, false),
                        furnace = rendered(true, true);
-    const Estimate a = mean_luminance(model.film), b = mean_luminance(exact.film);
+    const Measured a = mean_luminance(model.film), b = mean_luminance(exact.film);
     const double ratio = a.mean / b.mean;
     const bool energy = s == 0 || s == 1;
     table.add_column(row, "white furnace", image_mean(furnace.film),

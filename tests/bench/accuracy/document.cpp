@@ -9,7 +9,7 @@ namespace translucube::accuracy {
 namespace {
 
 /// Two digits of the error, and as many decimals of the value.
-std::string with_error(const Estimate& e) {
+std::string with_error(const Measured& e) {
   if (e.standard_error <= rounding * std::fabs(e.mean))
     return text(std::fabs(e.mean) < 0.01 ? "%.2g" : "%.6g", e.mean);
   const int decimals =

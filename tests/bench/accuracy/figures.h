@@ -16,7 +16,7 @@
 
 namespace translucube::accuracy {
 
-using test::Estimate;
+using test::Measured;
 
 using bench::text;
 
@@ -29,16 +29,16 @@ struct Truth {
 
 struct Figure {
   std::string row, column;
-  Estimate measured;
+  Measured measured;
   std::optional<Truth> truth = {};
   bool soft = false;  ///< a time: it depends on the machine
 };
 
 struct Table : bench::Table<Figure> {
-  void add(std::string row, Estimate measured, Truth truth) {
+  void add(std::string row, Measured measured, Truth truth) {
     figures.push_back({std::move(row), "", measured, std::move(truth)});
   }
-  void add_column(std::string row, std::string column, Estimate measured,
+  void add_column(std::string row, std::string column, Measured measured,
                   std::optional<Truth> truth = {}) {
     figures.push_back({std::move(row), std::move(column), measured, std::move(truth)});
   }

@@ -33,7 +33,7 @@ void mesh_furnace(Table& table, Run& run, const char* name, const TriangleMesh& 
 }
 
 /// Share of the diffuse light on a rough sphere of glass that leaves it again.
-Estimate kept(Run& run, double alpha, bool multiple) {
+Measured kept(Run& run, double alpha, bool multiple) {
   Scene scene = body(Sphere{}, material(1.5, alpha, 0), run.next_seed());
   std::get<RoughInterface>(scene.interface).multiple_scattering = multiple;
   look_from_afar(scene, 1.0, 64);
@@ -123,7 +123,7 @@ Table hard_cases(Run& run) {
     spec.environment.source =
         ImageEnvironmentSpec{in_repository("config/environments/sunrise.exr")};
     spec.seed = run.next_seed();
-    const Estimate other = image_mean(trace(*build_scene(spec), run.samples(256), run.threads()));
+    const Measured other = image_mean(trace(*build_scene(spec), run.samples(256), run.threads()));
     add_case(table, run, text("sun, alpha 0.2, sigma_s %g / mm", sigma_s), spec, 256,
              Truth{other.mean, other.standard_error, 0, "another seed"});
   }

@@ -5,9 +5,9 @@
 
 namespace translucube::accuracy {
 
-using test::Estimate;
+using test::Measured;
 
-Estimate mean_luminance(const Film& film) {
+Measured mean_luminance(const Film& film) {
   const auto [r, g, b] = channel_means(film);
   // The channels share their paths: their errors add up.
   const auto weighted = [](double x, double y, double z) {
@@ -17,12 +17,12 @@ Estimate mean_luminance(const Film& film) {
           weighted(r.standard_error, g.standard_error, b.standard_error)};
 }
 
-Estimate rel_mse(const Film& film, const Film& reference) {
+Measured rel_mse(const Film& film, const Film& reference) {
   const Image x = develop(film), r = develop(reference);
   const Image vx = variance(film), vr = variance(reference);
   const double n = static_cast<double>(x.pixels.size());
   const double freedom = std::min(film.passes, reference.passes) - 1.0;
-  Estimate mse;
+  Measured mse;
   for (std::size_t i = 0; i < x.pixels.size(); ++i) {
     const auto pixel = static_cast<int>(i / 3);
     const double ref = test::smoothed(r, pixel % r.width, pixel / r.width, static_cast<int>(i % 3));

@@ -112,7 +112,7 @@ Table interfaced_lambertian(Run& run) {
         look_from_afar(scene, 1.0, 64);
         return over_the_disc(image_mean(trace(scene, run.samples(192), run.threads())), 0);
       };
-      const Estimate dense = look(1e5), opaque = look(std::numeric_limits<double>::infinity());
+      const Measured dense = look(1e5), opaque = look(std::numeric_limits<double>::infinity());
       std::optional<Truth> dense_truth, opaque_truth;
       if (ior == 1) {
         dense_truth = Truth{lit_sphere(cone, chandrasekhar), 0, 0, "Chandrasekhar 1950"};

@@ -13,11 +13,11 @@ using namespace test;
 namespace {
 
 /// In units of the truth: what the tables and the plot compare across indices.
-Estimate relative(const Estimate& e, double truth) {
+Measured relative(const Measured& e, double truth) {
   return {e.mean / truth, e.standard_error / truth};
 }
 
-Estimate dense_path(double sigma_s, double ior, int walks, std::uint64_t key) {
+Measured dense_path(double sigma_s, double ior, int walks, std::uint64_t key) {
   constexpr double chord = 4.0 / 3;  // 4 V / S
   const MeanLength m = mean_length(Sphere{}, chord, enter_sphere, {sigma_s, 0}, ior, walks, key);
   return {m.mean, m.standard_error};
@@ -75,27 +75,27 @@ Table walks(Run& run) {
       Scene scene = body(Sphere{}, material(1.5, 0, sigma_s), run.next_seed());
       scene.lanes = {RgbLane{{sigma_a, sigma_a, sigma_a}}};
       look_from_afar(scene, 1.0, 64);
-      const Estimate developed =
+      const Measured developed =
           over_the_disc(image_mean(trace(scene, run.samples(256), run.threads())), 1);
-      const Estimate traced =
-          SphereWalk{{sigma_s, 0}, 1.5, sigma_a, SphereWalk::Steps::absorbing}.leaving(
+      const Measured traced =
+          ReferenceWalk{{sigma_s, 0}, 1.5, sigma_a, ReferenceWalk::Steps::absorbing}.leaving(
               run.walks(400'000), run.next_seed());
       table.add(text("developed = traced: sigma_s %g, sigma_a %g", sigma_s, sigma_a), developed,
                 {traced.mean, traced.standard_error, 0, "traced absorption"});
     }
   for (const double sigma_s : {10.0, 100.0})
     for (const double sigma_a : {0.01, 1.0}) {
-      const SphereWalk large{{sigma_s, 0}, 1.5, sigma_a};
-      const SphereWalk analog{{sigma_s, 0}, 1.5, sigma_a, SphereWalk::Steps::analog};
+      const ReferenceWalk large{{sigma_s, 0}, 1.5, sigma_a};
+      const ReferenceWalk analog{{sigma_s, 0}, 1.5, sigma_a, ReferenceWalk::Steps::analog};
       const int n = sigma_s > 50 ? 60'000 : 200'000;
-      const Estimate steps = large.leaving(run.walks(n), run.next_seed());
-      const Estimate flights = analog.leaving(run.walks(n), run.next_seed());
+      const Measured steps = large.leaving(run.walks(n), run.next_seed());
+      const Measured flights = analog.leaving(run.walks(n), run.next_seed());
       table.add(text("large steps = analog walk: sigma_s %g, sigma_a %g", sigma_s, sigma_a), steps,
                 {flights.mean, flights.standard_error, 0, "analog walk"});
     }
   for (const double sigma_s : {0.5, 4.0}) {
     const Material m = material(1.5, 0, sigma_s);
-    Estimate means[2];
+    Measured means[2];
     for (const bool mesh : {false, true}) {
       AnyShape shape = Sphere{};
       if (mesh) shape = build_mesh(icosphere(6)).mesh;
@@ -107,7 +107,7 @@ Table walks(Run& run) {
     table.add(text("81,920 triangles = sphere: lit from one side, sigma_s %g", sigma_s), means[1],
               {means[0].mean, means[0].standard_error, 0, "analytic sphere"});
   }
-  const Estimate ball = mean_path_of(build_mesh(icosphere(5)).mesh, material(1.5, 0, 2),
+  const Measured ball = mean_path_of(build_mesh(icosphere(5)).mesh, material(1.5, 0, 2),
                                      run.samples(256), run.next_seed(), run.threads(), 48);
   table.add("mean path length in 20,480 triangles / 3 R", relative(ball, 3),
             {1, 0, 0, "Blanco and Fournier 2003"});

@@ -72,10 +72,10 @@ Table slab_appearances(Run& run) {
     return slab_appearance(m, thickness, run.error(error), run.next_seed(), run.threads());
   };
   const auto reflected = [](const SlabAppearance::AtIncidence& at) {
-    return Estimate{at.value.reflected.total[1], at.standard_error.reflected.total[1]};
+    return Measured{at.value.reflected.total[1], at.standard_error.reflected.total[1]};
   };
   const auto transmitted = [](const SlabAppearance::AtIncidence& at) {
-    return Estimate{at.value.transmitted.total[1], at.standard_error.transmitted.total[1]};
+    return Measured{at.value.transmitted.total[1], at.standard_error.transmitted.total[1]};
   };
   const SlabAppearance thin = measure(1, 90, 10, 0.75, 0.02, 1.5e-4);
   table.add(std::string("R, ") + matched, reflected(thin.normal), van_de_hulst_r);

@@ -20,7 +20,7 @@ Table microsurfaces(Run& run) {
       "from 1 to 0.001."};
   const Vec3 a = from_angles(0.8, 0), b = from_angles(0.35, 2.0), below = from_angles(0.5, 2.6);
   const Vec3 a_from_below{a.x, a.y, -a.z}, below_from_a{below.x, below.y, -below.z};
-  const auto compare = [&](const std::string& name, const Estimate& forth, const Estimate& back) {
+  const auto compare = [&](const std::string& name, const Measured& forth, const Measured& back) {
     const double ratio = forth.mean / back.mean;
     const double error = std::fabs(ratio) * std::hypot(forth.standard_error / forth.mean,
                                                        back.standard_error / back.mean);
@@ -33,7 +33,7 @@ Table microsurfaces(Run& run) {
       const int n = run.walks(200'000);
       compare(text("reflection from %s, alpha %g", side, alpha),
               bsdf(ggx, eta, a, b, run.next_seed(), n), bsdf(ggx, eta, b, a, run.next_seed(), n));
-      Estimate down = bsdf(ggx, eta, a, below_from_a, run.next_seed(), n);
+      Measured down = bsdf(ggx, eta, a, below_from_a, run.next_seed(), n);
       down.mean /= eta * eta;
       down.standard_error /= eta * eta;
       compare(text("transmission from %s, alpha %g", side, alpha), down,

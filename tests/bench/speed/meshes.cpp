@@ -88,7 +88,7 @@ Tables meshes(Run& run) {
         const auto n = static_cast<double>(film.counters.camera_samples);
         const double time = 1e9 * film.cpu_seconds / n;
         if (sphere == 0) sphere = time;
-        const Estimate picture = image_mean(film);
+        const Measured picture = image_mean(film);
         const std::string row = text("%s, σR %g, %s", light.name, sigma_s, body.name.c_str());
         const bool judged = sigma_s == 10 && &body != &bodies.front();
         table.add(row, coverage, body.coverage);

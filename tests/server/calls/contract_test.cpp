@@ -275,7 +275,10 @@ TEST(ContractTest, WhatIsNoRequestIsAnsweredAsSaid) {
   for (int i = 0; i < 10; ++i) many_headers += "X: " + std::string(7 << 10, 'x') + "\r\n";
   const std::vector<std::pair<int, std::string>> messages{
       {400, "nonsense\r\n\r\n"},
-      {400, head + "X: " + std::string(9 << 10, 'x') + "\r\n\r\n"},
+      {431, head + "X: " + std::string(9 << 10, 'x') + "\r\n\r\n"},
+      {417, head + "Expect: miracles\r\n\r\n"},
+      {501, "BREW / HTTP/1.1\r\nHost: localhost\r\n\r\n"},
+      {505, "GET / HTTP/2.0\r\nHost: localhost\r\n\r\n"},
       {408, head},
       {413, "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 999999999999\r\n\r\n"},
       {414, "GET /" + std::string(9 << 10, 'x') + " HTTP/1.1\r\nHost: localhost\r\n\r\n"},

@@ -187,6 +187,17 @@ TEST(HttpServerTest, ABodyThatIsNotJsonOrIsCodedIsRefusedUnread) {
   EXPECT_EQ(type_of(served.client.Post("/v1/renders", form)), "unsupported-media-type");
 }
 
+TEST(HttpServerTest, AnEmptyIdempotencyKeyIsNoKey) {
+  Served served;
+  Wire wire(served.server.port());
+  const std::string body = small_request(4);
+  wire.send("POST /v1/renders HTTP/1.1\r\nHost: x\r\nIdempotency-Key:\r\nContent-Length: " +
+            std::to_string(body.size()) + "\r\n\r\n" + body);
+  const std::string answer = wire.receive();
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 422"));
+  EXPECT_THAT(answer, HasSubstr("Idempotency-Key"));
+}
+
 TEST(HttpServerTest, APostOrDeleteWithoutABodyIsNotWaitedFor) {
   Served served;
   const auto start = std::chrono::steady_clock::now();
@@ -205,8 +216,7 @@ TEST(HttpServerTest, WhatIsNotHttpIsAProblemAndTheConnectionEnds) {
   const std::string malformed = "malformed-http";
   const std::vector<std::pair<std::string, std::string>> requests{
       {"nonsense\r\n\r\n", malformed},
-      {"BREW /pot HTTP/1.1\r\nHost: x\r\n\r\n", malformed},
-      {"GET / HTTP/9.9\r\nHost: x\r\n\r\n", malformed},
+      {"GET / HTTP/1.1 \r\nHost: x\r\n\r\n", malformed},
       {"GET /livez HTTP/1.1\r\nHost: x\r\nContent-Length: 5\r\n\r\nhello", malformed},
       {post + "Content-Length: -1\r\n\r\n", malformed},
       {post + "Content-Length: 5\r\nContent-Length: 6\r\n\r\nhello", malformed},

@@ -51,6 +51,22 @@ struct FakeStream {
   }
 };
 
+/// Holds up who waits at it until it is opened.
+struct Gate {
+  std::atomic<bool> is_open = false;
+  std::atomic<int> waiting = 0;
+
+  void wait() {
+    ++waiting;
+    is_open.wait(false);
+    --waiting;
+  }
+  void open() {
+    is_open = true;
+    is_open.notify_all();
+  }
+};
+
 struct Sockets {
   explicit Sockets(HttpOptions options = {}, AccessPolicy policy = {})
       : front(std::move(policy), metrics,
@@ -59,11 +75,19 @@ struct Sockets {
         thread([this] { server.run(); }) {
     while (!server.is_running()) std::this_thread::sleep_for(milliseconds(1));
   }
-  ~Sockets() { server.stop(); }
+  ~Sockets() {
+    gate.open();
+    server.stop();
+  }
 
   HttpResponse answer(const HttpRequest& request) {
     ++answered;
     if (request.path == "/events") return {200, {}, {}, stream.open()};
+    if (request.path == "/slow") gate.wait();
+    if (request.path == "/waiting") {
+      request.give_way();
+      gate.wait();
+    }
     if (request.path == "/large") return {200, {}, "text/plain", std::string(16 << 20, 'x')};
     return {200, {}, "text/plain", "body of " + std::to_string(request.body.size())};
   }
@@ -79,6 +103,7 @@ struct Sockets {
 
   std::atomic<int> answered = 0;
   FakeStream stream;
+  Gate gate;
   Metrics metrics;
   Front front;
   HttpServer server;

@@ -35,6 +35,13 @@ class Wire {
     return connected_;
   }
 
+  /// What fits at once.
+  void send_some(std::string_view bytes) {
+    (void)::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  }
+
+  void end_sending() { ::shutdown(socket_.get(), SHUT_WR); }
+
   /// One answer, headers and body; what came of it by the end of the connection or of the time.
   std::string receive(int milliseconds = 15'000) {
     std::string text;

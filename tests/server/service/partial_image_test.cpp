@@ -27,8 +27,8 @@ Engine around_passes(std::function<std::optional<PassFilm>(const Pass&, const Tr
   return [around = std::move(around), real = renderer_engine()](const SceneSpec& spec) {
     TracedScene scene = real(spec);
     scene.trace = [around, trace = scene.trace](const Pass& pass, int threads,
-                                                std::stop_token stop) {
-      return around(pass, [&] { return trace(pass, threads, stop); });
+                                                const Patience& patience) {
+      return around(pass, [&] { return trace(pass, threads, patience); });
     };
     return scene;
   };

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "api/request/canonical.h"
@@ -65,6 +66,45 @@ TEST(SweepServiceTest, TracesEachPairOfRoughnessAndScatteringOnce) {
   EXPECT_EQ(answer["counts"]["succeeded"], 6);
   EXPECT_EQ(answer["stats"]["traced_images"], 2);
   for (std::size_t point = 0; point < 6; ++point) EXPECT_FALSE(tested.exr(sweep.id, point).empty());
+}
+
+TEST(SweepServiceTest, ToTellASweepIsWorkOnlyAfterAChange) {
+  FakeRenderer renderer;
+  SweepsUnderTest tested(renderer.engine(), {0, {}});
+  JobService& service = tested.service.service;
+  const std::string id = tested.submit(sweep_request(4, some_axes)).id;
+  const ToldText first = *service.tell_sweep(id);
+  const Moment before = *service.moment_of_sweep(id);
+  EXPECT_EQ(*service.tell_sweep(id), first);  // the same object
+  EXPECT_EQ(first->json, to_json(tested.get(id)));
+  ASSERT_TRUE(service.cancel_sweep(id));
+  EXPECT_NE(service.moment_of_sweep(id)->version, before.version);
+  const ToldText second = *service.tell_sweep(id);
+  EXPECT_EQ(second->state, JobState::canceled);
+  EXPECT_EQ(second->json, to_json(tested.get(id)));
+  EXPECT_FALSE(service.remove_sweep(id));
+  EXPECT_FALSE(service.tell_sweep(id));
+  EXPECT_FALSE(service.moment_of_sweep(id));
+}
+
+TEST(SweepServiceTest, EachStepOfASweepIsANewVersion) {
+  FakeRenderer renderer;
+  SweepsUnderTest tested(renderer.engine());
+  JobService& service = tested.service.service;
+  renderer.milliseconds_per_pass = 20;
+  const std::string id = tested.submit(sweep_request(4, some_axes)).id;
+  std::map<std::string, std::string> told;  // by version
+  service.changes().watch(std::chrono::seconds(120), [&] {
+    const Moment moment = *service.moment_of_sweep(id);
+    const std::string now = to_json(tested.get(id));
+    // Where nothing came in between, a version is one text.
+    if (service.moment_of_sweep(id)->version == moment.version) {
+      EXPECT_EQ(told.try_emplace(moment.version, now).first->second, now);
+    }
+    return is_end(moment.state);
+  });
+  EXPECT_EQ((*service.tell_sweep(id))->json, to_json(tested.get(id)));
+  EXPECT_EQ((*service.tell_sweep(id))->state, JobState::succeeded);
 }
 
 // The promise of design.md, with the real renderer: each lane, the infinite one among them, is the

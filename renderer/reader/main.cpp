@@ -1,0 +1,59 @@
+// translucube_reader KIND: the program that parses files of strangers, in the sandbox
+// (picture/sandbox). It finds the file open, and leaves its answer where it was told to. Not for
+// people: the service and the command line start it.
+
+#include <string_view>
+
+#include "picture/light/decode.h"
+#include "picture/oiio/codecs.h"
+#include "picture/sandbox/confine.h"
+#include "renderer/shape/file/mesh_format.h"
+
+namespace {
+
+using namespace translucube;
+
+template <class T>
+std::span<const std::byte> bytes_of(const T& value) {
+  return std::as_bytes(std::span(&value, 1));
+}
+
+using Answer = std::function<void(const AnswerPieces&)>;
+
+void read_light(std::span<const char> bytes, const Answer& answer) {
+  const Image image = decode_light(bytes);
+  const std::int32_t width = image.width, height = image.height;
+  answer({bytes_of(width), bytes_of(height), std::as_bytes(std::span(image.pixels))});
+}
+
+void load_codecs(std::span<const char> bytes) {
+  switch (light_format(bytes)) {
+    case LightFormat::png:
+    case LightFormat::jpeg:
+    case LightFormat::tiff:
+      image_codecs().prepare_stored();
+      break;
+    default:
+      break;
+  }
+}
+
+void read_mesh(MeshFormat format, std::span<const char> bytes, const Answer& answer) {
+  const TriangleMesh mesh = parse_mesh(format, {bytes.data(), bytes.size()});
+  const std::uint64_t vertices = mesh.vertices.size(), triangles = mesh.triangles.size();
+  answer({bytes_of(vertices), bytes_of(triangles), std::as_bytes(std::span(mesh.vertices)),
+          std::as_bytes(std::span(mesh.triangles))});
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const std::string_view kind = count == 2 ? words[1] : "";
+  if (kind == "light") return run_confined(load_codecs, read_light);
+  for (const MeshFormat format : {MeshFormat::obj, MeshFormat::ply})
+    if (kind == sandbox_kind(format))
+      return run_confined(
+          [](auto) {},
+          [format](auto bytes, const Answer& answer) { read_mesh(format, bytes, answer); });
+  return sandbox_no_answer;
+}

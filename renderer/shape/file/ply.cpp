@@ -1,0 +1,366 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <optional>
+
+#include "renderer/shape/file/number.h"
+#include "renderer/shape/file/polygon_mesh.h"
+
+namespace translucube {
+namespace {
+
+enum class Scalar { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+struct ScalarName {
+  std::string_view name;
+  Scalar type;
+};
+constexpr std::array<ScalarName, 16> scalar_names{{{"char", Scalar::int8},
+                                                   {"uchar", Scalar::uint8},
+                                                   {"short", Scalar::int16},
+                                                   {"ushort", Scalar::uint16},
+                                                   {"int", Scalar::int32},
+                                                   {"uint", Scalar::uint32},
+                                                   {"float", Scalar::float32},
+                                                   {"double", Scalar::float64},
+                                                   {"int8", Scalar::int8},
+                                                   {"uint8", Scalar::uint8},
+                                                   {"int16", Scalar::int16},
+                                                   {"uint16", Scalar::uint16},
+                                                   {"int32", Scalar::int32},
+                                                   {"uint32", Scalar::uint32},
+                                                   {"float32", Scalar::float32},
+                                                   {"float64", Scalar::float64}}};
+
+std::size_t size_of(Scalar type) {
+  constexpr std::array<std::size_t, 8> sizes{1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[static_cast<std::size_t>(type)];
+}
+bool is_integer(Scalar type) { return type < Scalar::float32; }
+
+struct Property {
+  std::string name;
+  Scalar type = Scalar::float32;
+  std::optional<Scalar> count;  ///< of a list
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+};
+
+enum class Encoding { ascii, little_endian, big_endian };
+
+[[noreturn]] void fail(const std::string& where, const std::string& why) {
+  throw MeshError(where + ": " + why);
+}
+
+/// What stands in the header, and what is behind it.
+class HeaderReader {
+ public:
+  explicit HeaderReader(std::string_view bytes) : rest_(bytes) {}
+
+  void read() {
+    if (next_line() != "ply") throw MeshError("the file does not begin with the line \"ply\"");
+    while (true) {
+      if (rest_.empty()) throw MeshError("the header has no line \"end_header\"");
+      std::string_view line = next_line();
+      const std::string_view keyword = next_word(line, " \t");
+      if (keyword == "end_header") break;
+      if (keyword == "comment" || keyword == "obj_info" || keyword.empty()) continue;
+      if (keyword == "format")
+        read_format(line);
+      else if (keyword == "element")
+        read_element(line);
+      else if (keyword == "property")
+        read_property(line);
+      else
+        fail_here("is no line of a header");
+    }
+    if (!encoding_) throw MeshError("the header names no format");
+  }
+
+  std::string_view rest() const { return rest_; }
+  std::uint32_t lines() const { return line_; }
+  Encoding encoding() const { return *encoding_; }
+  const std::vector<Element>& elements() const { return elements_; }
+
+ private:
+  [[noreturn]] void fail_here(const std::string& why) const {
+    fail("line " + std::to_string(line_) + " of the header", why);
+  }
+
+  std::string_view next_line() {
+    ++line_;
+    const std::size_t end = rest_.find('\n');
+    std::string_view line = rest_.substr(0, end);
+    rest_ = end == rest_.npos ? std::string_view{} : rest_.substr(end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
+  }
+
+  void read_format(std::string_view line) {
+    const std::string_view name = next_word(line, " \t");
+    if (encoding_) fail_here("a second format");
+    if (name == "ascii")
+      encoding_ = Encoding::ascii;
+    else if (name == "binary_little_endian")
+      encoding_ = Encoding::little_endian;
+    else if (name == "binary_big_endian")
+      encoding_ = Encoding::big_endian;
+    else
+      fail_here("is no format of PLY");
+    if (next_word(line, " \t") != "1.0") fail_here("is not version 1.0");
+  }
+
+  void read_element(std::string_view line) {
+    Element element{std::string(next_word(line, " \t")), 0, {}};
+    if (!is_name(element.name) || !read_integer(next_word(line, " \t"), element.count))
+      fail_here("an element needs a name and a number");
+    for (const Element& other : elements_)
+      if (other.name == element.name) fail_here("the element " + element.name + " comes twice");
+    constexpr std::size_t most = 64;
+    if (elements_.size() == most) fail_here("more elements than " + std::to_string(most));
+    elements_.push_back(std::move(element));
+  }
+
+  void read_property(std::string_view line) {
+    if (elements_.empty()) fail_here("a property without an element");
+    Property property;
+    std::string_view type = next_word(line, " \t");
+    if (type == "list") {
+      property.count = scalar(next_word(line, " \t"));
+      if (!is_integer(*property.count)) fail_here("the length of a list is an integer");
+      type = next_word(line, " \t");
+    }
+    property.type = scalar(type);
+    property.name = next_word(line, " \t");
+    if (!is_name(property.name)) fail_here("a property needs a name");
+    constexpr std::size_t most = 256;
+    auto& properties = elements_.back().properties;
+    if (properties.size() == most) fail_here("more properties than " + std::to_string(most));
+    properties.push_back(std::move(property));
+  }
+
+  /// What can be told in a message.
+  static bool is_name(std::string_view name) {
+    constexpr std::size_t longest = 64;
+    return !name.empty() && name.size() <= longest &&
+           std::ranges::all_of(name, [](unsigned char c) { return c > 32 && c < 127; });
+  }
+
+  Scalar scalar(std::string_view name) const {
+    const auto* found = std::ranges::find(scalar_names, name, &ScalarName::name);
+    if (found == scalar_names.end()) fail_here("is no type of PLY");
+    return found->type;
+  }
+
+  std::string_view rest_;
+  std::uint32_t line_ = 0;
+  std::optional<Encoding> encoding_;
+  std::vector<Element> elements_;
+};
+
+/// One number after the other from the body.
+class BodyReader {
+ public:
+  BodyReader(std::string_view rest, Encoding encoding) : rest_(rest), encoding_(encoding) {}
+
+  void stand_at(const Element& element, std::uint64_t index) {
+    element_ = &element;
+    index_ = index;
+  }
+
+  [[noreturn]] void fail_here(const std::string& why) const {
+    fail(element_->name + " " + std::to_string(index_ + 1) + " of " +
+             std::to_string(element_->count),
+         why);
+  }
+
+  double number(Scalar type) {
+    if (encoding_ == Encoding::ascii) return ascii_number(type);
+    const std::size_t size = size_of(type);
+    if (rest_.size() < size) fail_here("the file ends within it");
+    std::array<char, 8> bytes{};
+    std::ranges::copy(rest_.substr(0, size), bytes.begin());
+    if ((encoding_ == Encoding::little_endian) != (std::endian::native == std::endian::little))
+      std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    rest_.remove_prefix(size);
+    switch (type) {
+      case Scalar::int8:
+        return as<std::int8_t>(bytes);
+      case Scalar::uint8:
+        return as<std::uint8_t>(bytes);
+      case Scalar::int16:
+        return as<std::int16_t>(bytes);
+      case Scalar::uint16:
+        return as<std::uint16_t>(bytes);
+      case Scalar::int32:
+        return as<std::int32_t>(bytes);
+      case Scalar::uint32:
+        return as<std::uint32_t>(bytes);
+      case Scalar::float32:
+        return static_cast<double>(as<float>(bytes));
+      case Scalar::float64:
+        return as<double>(bytes);
+    }
+    return 0;
+  }
+
+  /// A list's length. No list is longer than what is left of the file.
+  std::uint64_t length(Scalar type, Scalar of) {
+    const double count = number(type);
+    const std::size_t least = encoding_ == Encoding::ascii ? 2 : size_of(of);
+    if (count < 0) fail_here("a list of negative length");
+    if (count * static_cast<double>(least) > static_cast<double>(rest_.size() + 1))
+      fail_here("a list longer than the rest of the file");
+    return static_cast<std::uint64_t>(count);
+  }
+
+  bool can_hold(const Element& element) const {
+    std::size_t least = 0;
+    for (const Property& p : element.properties)
+      least += encoding_ == Encoding::ascii ? 2 : size_of(p.count ? *p.count : p.type);
+    return element.properties.empty() ||
+           element.count <= (rest_.size() + 1) / std::max<std::size_t>(1, least);
+  }
+
+  /// Whether nothing but white space is left.
+  bool at_end() const { return rest_.find_first_not_of(" \t\r\n") == rest_.npos; }
+
+ private:
+  template <class T>
+  static T as(const std::array<char, 8>& bytes) {
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  }
+
+  double ascii_number(Scalar type) {
+    const std::string_view word = next_word(rest_, " \t\r\n");
+    if (word.empty()) fail_here("the file ends within it");
+    double value = 0;
+    if (!read_number(word, value)) fail_here("a word that is no finite number");
+    if (!is_integer(type)) return value;
+    const bool is_signed = type == Scalar::int8 || type == Scalar::int16 || type == Scalar::int32;
+    const int bits = static_cast<int>(8 * size_of(type)) - is_signed;
+    const double most = std::ldexp(1.0, bits) - 1, least = is_signed ? -most - 1 : 0;
+    if (value != std::floor(value) || value > most || value < least)
+      fail_here("a number that its type does not have");
+    return value;
+  }
+
+  std::string_view rest_;
+  Encoding encoding_;
+  const Element* element_ = nullptr;
+  std::uint64_t index_ = 0;
+};
+
+void skip(const Property& property, BodyReader& body) {
+  const std::uint64_t n = property.count ? body.length(*property.count, property.type) : 1;
+  for (std::uint64_t i = 0; i < n; ++i) body.number(property.type);
+}
+
+void read_vertices(const Element& element, BodyReader& body, PolygonMesh& mesh) {
+  std::array<int, 3> at{-1, -1, -1};
+  for (std::size_t i = 0; i < element.properties.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (element.properties[i].name == std::string_view("xyz").substr(axis, 1)) {
+        const Property& property = element.properties[i];
+        if (property.count || at[axis] >= 0) throw MeshError("x, y and z are one number each");
+        at[axis] = static_cast<int>(i);
+        if (property.type == Scalar::float32) mesh.rounding = 0x1p-24;
+      }
+  if (std::ranges::min(at) < 0) throw MeshError("its vertices have no x, y and z");
+  mesh.vertices.reserve(element.count);
+  for (std::uint64_t v = 0; v < element.count; ++v) {
+    body.stand_at(element, v);
+    std::array<double, 3> p{};
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const auto* const axis = std::ranges::find(at, static_cast<int>(i));
+      if (axis == at.end()) {
+        skip(element.properties[i], body);
+        continue;
+      }
+      const double x = body.number(element.properties[i].type);
+      if (!std::isfinite(x)) body.fail_here("a coordinate that is not finite");
+      p[static_cast<std::size_t>(axis - at.begin())] = x;
+    }
+    mesh.vertices.push_back({p[0], p[1], p[2]});
+  }
+}
+
+void read_corners(const Property& property, std::uint64_t vertices, BodyReader& body,
+                  PolygonMesh& mesh) {
+  const std::uint64_t n = body.length(*property.count, property.type);
+  if (n < 3) body.fail_here("a face needs three corners");
+  for (std::uint64_t i = 0; i < n; ++i) {
+    const double vertex = body.number(property.type);
+    if (vertex < 0 || vertex >= static_cast<double>(vertices))
+      body.fail_here("a vertex that does not exist: there are " + std::to_string(vertices));
+    mesh.corners.push_back(static_cast<std::uint32_t>(vertex));
+  }
+}
+
+void read_faces(const Element& element, std::uint64_t vertices, BodyReader& body,
+                PolygonMesh& mesh) {
+  const auto names_corners = [](const Property& p) {
+    return p.name == "vertex_indices" || p.name == "vertex_index";
+  };
+  if (std::ranges::count_if(element.properties, names_corners) != 1)
+    throw MeshError("its faces have no vertex_indices");
+  const Property& corners = *std::ranges::find_if(element.properties, names_corners);
+  if (!corners.count || !is_integer(corners.type))
+    throw MeshError("vertex_indices is no list of integers");
+  mesh.ends.reserve(element.count);
+  mesh.places.reserve(element.count);
+  for (std::uint64_t f = 0; f < element.count; ++f) {
+    body.stand_at(element, f);
+    for (const Property& property : element.properties)
+      if (&property == &corners)
+        read_corners(property, vertices, body, mesh);
+      else
+        skip(property, body);
+    mesh.ends.push_back(mesh.corners.size());
+    mesh.places.push_back(static_cast<std::uint32_t>(f + 1));
+  }
+}
+
+}  // namespace
+
+PolygonMesh parse_ply(std::string_view bytes) {
+  HeaderReader header(bytes);
+  header.read();
+  PolygonMesh mesh;
+  mesh.place = "face";
+  const auto& elements = header.elements();
+  const auto vertex = std::ranges::find(elements, "vertex", &Element::name);
+  if (vertex == elements.end()) throw MeshError("the file has no element \"vertex\"");
+  if (vertex->count > std::numeric_limits<std::uint32_t>::max())
+    throw MeshError("more vertices than can be counted");
+  BodyReader body(header.rest(), header.encoding());
+  for (const Element& element : elements) {
+    if (element.name == "tristrips") throw MeshError("triangle strips (tristrips) are not read");
+    if (!body.can_hold(element))
+      throw MeshError("the file is too short for " + std::to_string(element.count) + " of \"" +
+                      element.name + "\"");
+    if (&element == &*vertex) {
+      read_vertices(element, body, mesh);
+    } else if (element.name == "face") {
+      read_faces(element, vertex->count, body, mesh);
+    } else if (!element.properties.empty()) {
+      for (std::uint64_t i = 0; i < element.count; ++i) {
+        body.stand_at(element, i);
+        for (const Property& property : element.properties) skip(property, body);
+      }
+    }
+  }
+  if (!body.at_end()) throw MeshError("more bytes follow behind the last element");
+  if (mesh.faces() == 0) throw MeshError("the mesh has no face");
+  return mesh;
+}
+
+}  // namespace translucube
