@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "picture/image_io.h"
+#include "picture/light_map.h"
 #include "renderer/light/environment_cache.h"
 #include "renderer/scene/scene.h"
 #include "renderer/shape/file/mesh_file.h"
@@ -27,6 +28,8 @@ PlacedShape make_shape(const MeshObject& object) {
     const double back =
         std::ranges::min(mesh.vertices, {}, [](Vec3 v) { return v.z; }).z - built.center.z;
     return {built.mesh, built.center, built.radius, back / built.radius};
+  } catch (const MeshUnavailable& error) {
+    throw SceneError(SceneError::Part::object, error.what(), true);
   } catch (const MeshError& error) {
     throw SceneError(SceneError::Part::object, error.what());
   }
@@ -80,6 +83,8 @@ Environment make_environment(const EnvironmentSpec& spec, EnvironmentSide side,
     return *cache.get(std::get<ImageEnvironmentSpec>(spec.source).file,
                       std::fmod(spec.rotation_deg, 360) * std::numbers::pi / 180, spec.scale,
                       side);
+  } catch (const ImageUnavailable& error) {
+    throw SceneError(SceneError::Part::environment, error.what(), true);
   } catch (const ImageError& error) {
     throw SceneError(SceneError::Part::environment, error.what());
   }
@@ -129,6 +134,8 @@ void use_dipole(const DipoleModel& model, const SceneSpec& spec, Scene& scene) {
 void check_mesh(const std::filesystem::path& file) {
   try {
     read_mesh(file);
+  } catch (const MeshUnavailable& error) {
+    throw SceneError(SceneError::Part::object, error.what(), true);
   } catch (const MeshError& error) {
     throw SceneError(SceneError::Part::object, error.what());
   }

@@ -93,7 +93,9 @@ struct SceneSpec {
 struct SceneError : std::runtime_error {
   enum class Part { object, environment, camera };
   Part part;
-  SceneError(Part p, const std::string& what) : std::runtime_error(what), part(p) {}
+  bool unavailable;  ///< another try may help: what failed is the reading, not what is read
+  SceneError(Part p, const std::string& what, bool may_help = false)
+      : std::runtime_error(what), part(p), unavailable(may_help) {}
 };
 
 /// A scene ready to trace (scene.h): immutable, shared by threads.

@@ -14,11 +14,13 @@ namespace {
 
 constexpr std::array faults{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT};
 std::array<char, PATH_MAX> marked{};
+pid_t marking = 0;  // a child that inherits the handler is not the service
 std::array<struct sigaction, faults.size()> handlers_before{};
 
 /// Calls nothing that is not async-signal-safe (signal-safety(7)).
 void leave_mark(int signal) {
-  const int file = ::open(marked.data(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  const int file =
+      ::getpid() == marking ? ::open(marked.data(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600) : -1;
   if (file >= 0) ::close(file);
   for (std::size_t i = 0; i < faults.size(); ++i)
     if (faults[i] == signal) ::sigaction(signal, &handlers_before[i], nullptr);
@@ -33,6 +35,7 @@ void mark_crashes(const std::filesystem::path& file) {
   if (path.size() >= marked.size()) return;
   std::ranges::copy(path, marked.begin());
   marked[path.size()] = '\0';
+  marking = ::getpid();
   struct sigaction action {};
   action.sa_handler = leave_mark;
   sigemptyset(&action.sa_mask);

@@ -55,25 +55,31 @@ JobService::JobService(const api::Catalog& catalog, const ServerConfig& config,
 
 JobService::~JobService() { shut_down(); }
 
-/// What has to be done once in a while, whether there is work or not.
+/// What has to be done once in a while, whether there is work or not. On a full disk some of it
+/// fails, and what makes room is done all the same.
 void JobService::keep_house(std::stop_token ended) {
+  const auto attempt = [](const auto& work) {
+    try {
+      work();
+    } catch (const std::exception& error) {  // StoreError, FileError, no memory
+      spdlog::error("the house is not kept: {}", error.what());
+    }
+  };
   std::mutex mutex;
   std::condition_variable_any condition;
   std::unique_lock lock(mutex);
   while (!ended.stop_requested()) {
-    try {
-      store_.checkpoint();
+    attempt([&] {
       room_ = working_room(store_.open_needs().largest);
-      bool removed = janitor_.keep_within(config_.artifact_bytes, room_);
+      if (janitor_.keep_within(config_.artifact_bytes, room_)) pictures_.forget();
       janitor_.give_way(room_);
-      if (janitor_.forget_old(system_clock_ms() - config_.keep_days * day_ms) > 0) {
-        ended_.forget();
-        removed = true;
-      }
-      if (removed) pictures_.forget();
-    } catch (const std::exception& error) {  // StoreError, FileError, no memory
-      spdlog::error("the house is not kept: {}", error.what());
-    }
+    });
+    attempt([&] { store_.checkpoint(); });
+    attempt([&] {
+      if (janitor_.forget_old(system_clock_ms() - config_.keep_days * day_ms) == 0) return;
+      ended_.forget();
+      pictures_.forget();
+    });
     condition.wait_for(lock, ended, between_rounds, [] { return false; });
   }
 }

@@ -48,7 +48,8 @@ bool is_of_resources(const api::Problem& problem) {
   constexpr std::array<std::string_view, 4> named{"/environment/image", "/environment/file",
                                                   "/object/file", "/absorber"};
   return !problem.faults.empty() && std::ranges::all_of(problem.faults, [&](const auto& fault) {
-    return std::ranges::any_of(named,
+    return fault.pointer.starts_with("/absorbers/") ||
+           std::ranges::any_of(named,
                                [&](std::string_view end) { return fault.pointer.ends_with(end); });
   });
 }

@@ -100,7 +100,8 @@ void TaskRunner::refuse(const Task& task, const api::RenderRequest& request,
                         const SceneError& error) {
   const auto resource = resource_of(request, workshop_.catalog, error.part);
   if (resource) {
-    const bool readable = resource->of == Setback::Of::request && can_be_read(resource->file);
+    const bool readable = resource->of == Setback::Of::request && !error.unavailable &&
+                          can_be_read(resource->file);
     if (wait(task, {resource->of, "A file that a render needs cannot be read.", error.what()},
              readable ? most_refusals : any_number))
       return;

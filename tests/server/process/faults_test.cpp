@@ -37,7 +37,7 @@ TEST(FaultsTest, AFileThatMayNotGrowIsAFullDiskAndNoEnd) {
   {
     Shell shell("ulimit -f 400; ", folder / "data");  // 200 or 400 KiB: shells differ
     const auto posted =
-        shell.client().Post("/v1/renders", small_request(64, 1, 256), "application/json");
+        shell.client().Post("/v1/renders", small_request(4, 1, 256), "application/json");
     ASSERT_TRUE(posted);
     ASSERT_EQ(posted->status, 202) << posted->body;
     location = posted->get_header_value("Location");
