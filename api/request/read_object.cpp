@@ -65,12 +65,7 @@ void read_mesh(FieldReader& reader, const Catalog& catalog, ObjectRequest& out, 
   const std::string where = reader.pointer_to("file");
   auto path = resolve_file(*file, where, catalog, faults);
   if (!path) return;
-  try {
-    check_mesh(*path);
-    out = MeshRequest{std::move(*path)};
-  } catch (const SceneError& error) {
-    faults.add(where, error.what());
-  }
+  if (check_file(check_mesh, *path, where, faults)) out = MeshRequest{std::move(*path)};
 }
 
 std::string type_of(const ObjectRequest& request) {

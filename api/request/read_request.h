@@ -3,6 +3,7 @@
 // The parts of a request, read over their defaults; shared by requests and by the defaults
 // themselves in config/service.json.
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -48,5 +49,10 @@ std::optional<SpectralAbsorber> read_spectrum(FieldReader& object);
 /// is a regular file. Outside the catalog's folders the fault is the same whether it exists or not.
 std::optional<std::string> resolve_file(const std::string& file, const std::string& pointer,
                                         const Catalog& catalog, Faults& faults);
+
+/// Whether such a file is what it has to be, by the renderer's check; what it cannot tell now counts
+/// as right.
+bool check_file(void (*check)(const std::filesystem::path&), const std::string& file,
+                const std::string& pointer, Faults& faults);
 
 }  // namespace translucube::api

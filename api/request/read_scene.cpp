@@ -15,6 +15,13 @@ constexpr Range position_range{-1e12, 1e12};  // mm: room around the largest sph
 // (constant x scale)^2 finite.
 constexpr Range radiance_range{0, 1e9};
 
+void read_map(const std::string& file, const std::string& pointer, const Catalog& catalog,
+              EnvironmentRequest& out, Faults& faults) {
+  auto path = resolve_file(file, pointer, catalog, faults);
+  if (path && check_file(check_environment, *path, pointer, faults))
+    out.source = FileEnvironment{std::move(*path)};
+}
+
 void read_environment(const json& value, const std::string& pointer, const Catalog& catalog,
                       EnvironmentRequest& out, Faults& faults) {
   FieldReader environment(value, pointer, faults);
@@ -32,8 +39,7 @@ void read_environment(const json& value, const std::string& pointer, const Catal
   if (const auto constant = environment.triple("constant", radiance_range))
     out.source = ConstantEnvironment{*constant};
   if (const auto file = environment.string("file"))
-    if (auto path = resolve_file(*file, environment.pointer_to("file"), catalog, faults))
-      out.source = FileEnvironment{std::move(*path)};
+    read_map(*file, environment.pointer_to("file"), catalog, out, faults);
   if (const auto rotation = environment.number("rotation_deg", {})) out.rotation_deg = *rotation;
   if (const auto scale = environment.number("scale", radiance_range)) out.scale = *scale;
   environment.refuse_unknown_keys();

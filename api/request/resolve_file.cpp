@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "api/request/read_request.h"
+#include "renderer/scene/spec.h"
 
 namespace translucube::api {
 namespace {
@@ -74,6 +75,19 @@ std::optional<std::string> resolve_file(const std::string& file, const std::stri
                                   [&](const fs::path& place) { return fs::exists(place, error); });
   faults.add(pointer, exists ? "is not a regular file" : "there is no such file");
   return std::nullopt;
+}
+
+bool check_file(void (*check)(const fs::path&), const std::string& file, const std::string& pointer,
+                Faults& faults) {
+  try {
+    check(file);
+  } catch (const SceneError& error) {
+    // What the machine cannot do now is tried again by whoever renders.
+    if (error.unavailable) return true;
+    faults.add(pointer, error.what());
+    return false;
+  }
+  return true;
 }
 
 }  // namespace translucube::api

@@ -81,8 +81,7 @@ Environment make_environment(const EnvironmentSpec& spec, EnvironmentSide side,
     return UniformEnvironment{constant->radiance * static_cast<float>(spec.scale)};
   try {
     return *cache.get(std::get<ImageEnvironmentSpec>(spec.source).file,
-                      std::fmod(spec.rotation_deg, 360) * std::numbers::pi / 180, spec.scale,
-                      side);
+                      std::fmod(spec.rotation_deg, 360) * std::numbers::pi / 180, spec.scale, side);
   } catch (const ImageUnavailable& error) {
     throw SceneError(SceneError::Part::environment, error.what(), true);
   } catch (const ImageError& error) {
@@ -141,6 +140,21 @@ void check_mesh(const std::filesystem::path& file) {
   }
 }
 
+void check_environment(const std::filesystem::path& file) {
+  const auto refuse = [&](std::string why, bool unavailable) {
+    const std::string name = file.string() + ": ";
+    if (why.starts_with(name)) why.erase(0, name.size());
+    throw SceneError(SceneError::Part::environment, why, unavailable);
+  };
+  try {
+    read_light_map(file);
+  } catch (const ImageUnavailable& error) {
+    refuse(error.what(), true);
+  } catch (const ImageError& error) {
+    refuse(error.what(), false);
+  }
+}
+
 std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache* environments) {
   EnvironmentCache own;
   const PlacedShape placed = std::visit([](const auto& o) { return make_shape(o); }, spec.object);
@@ -163,7 +177,8 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   scene->environment = make_environment(
       spec.environment, spec.backdrop ? EnvironmentSide::front : EnvironmentSide::all,
       environments ? *environments : own);
-  scene->camera = make_camera(spec, to_body(spec.camera.position_mm), to_body(spec.camera.target_mm));
+  scene->camera =
+      make_camera(spec, to_body(spec.camera.position_mm), to_body(spec.camera.target_mm));
   scene->camera_inside =
       std::visit([&](const auto& s) { return s.inside(scene->camera.position); }, scene->shape);
   if (scene->backdrop && scene->camera.position.z <= scene->backdrop->z)

@@ -105,9 +105,10 @@ class EnvironmentCache;
 std::shared_ptr<const Scene> build_scene(const SceneSpec& spec,
                                          EnvironmentCache* environments = nullptr);
 
-/// Throws SceneError with the reason if the mesh cannot be read, is empty, not finite, or not
-/// closed (every edge shared by two triangles of opposite orientation). Outward orientation is
-/// made, not asked for.
+/// Throws SceneError with the reason, which does not name the file, if it cannot be read as a mesh
+/// (shape/file/mesh_file.h).
 void check_mesh(const std::filesystem::path& file);
+/// Likewise as an environment (picture/light_map.h).
+void check_environment(const std::filesystem::path& file);
 
 }  // namespace translucube

@@ -3,6 +3,7 @@
 #include "api/request/canonical.h"
 #include "api/request/scene_spec.h"
 #include "tests/api/fixture.h"
+#include "tests/support/tiny_map.h"
 
 namespace translucube::api {
 namespace {
@@ -157,7 +158,7 @@ TEST_F(SceneFiles, OpenAndEmptyMeshesAreRefused) {
 }
 
 TEST_F(SceneFiles, EnvironmentFileInAnAllowedFolderIsTaken) {
-  const auto file = folder.write("allowed/sky.exr", "pixels");
+  const auto file = folder.write("allowed/sky.exr", translucube::test::tiny_map);
   const RenderRequest request = accepted(environment_file("sky.exr"), catalog);
   EXPECT_EQ(std::get<FileEnvironment>(request.environment.source).file, file.string());
   const SceneSpec spec = scene_spec(request, catalog);

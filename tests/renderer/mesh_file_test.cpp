@@ -376,15 +376,17 @@ TEST(PlyFile, IsRefusedWithThePlaceAndWhy) {
 TEST(MeshAnswer, IsBelievedInNothing) {
   const TriangleMesh mesh = box({1, 1, 1});
   const auto packed = [](std::uint64_t vertices, std::uint64_t triangles, const TriangleMesh& m) {
-    std::vector<std::byte> bytes;
+    std::string text;
     const auto add = [&](auto span) {
-      const auto b = std::as_bytes(span);
-      bytes.insert(bytes.end(), b.begin(), b.end());
+      const auto part = std::as_bytes(span);
+      text.append(reinterpret_cast<const char*>(part.data()), part.size());
     };
     add(std::span(&vertices, 1));
     add(std::span(&triangles, 1));
     add(std::span(m.vertices));
     add(std::span(m.triangles));
+    std::vector<std::byte> bytes(text.size());
+    std::memcpy(bytes.data(), text.data(), text.size());
     return bytes;
   };
   EXPECT_EQ(unpack_mesh(packed(8, 12, mesh)).triangles.size(), 12u);

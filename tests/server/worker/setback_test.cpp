@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "tests/server/fixture.h"
+#include "tests/support/tiny_map.h"
 
 namespace translucube::server::test {
 namespace {
@@ -73,7 +74,7 @@ TEST(SetbackTest, ManyRendersWaitForAFolderThatIsAwayAndAllEndWell) {
 struct WithFiles {
   WithFiles() {
     fs::create_directories(folder / "files");
-    write_file(file, "an environment");
+    write_file(file, translucube::test::tiny_map);
     tested.catalog.file_folders = {folder / "files"};
   }
   std::string request() const {
