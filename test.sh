@@ -46,7 +46,7 @@ fuzz() {
   local start=$SECONDS
   echo "== fuzz"
   bash .ci/install_packages.sh .ci/fuzz_packages.txt
-  tests/fuzz/run.sh 15 2>&1 | tee "$logs/fuzz" || failed=1
+  tests/fuzz/run.sh 5 2>&1 | tee "$logs/fuzz" || failed=1
   times+=", fuzz $((SECONDS - start)) s"
   summaries="== fuzz"$'\n'$(grep '^Done\|SUMMARY' "$logs/fuzz" || echo failed)$'\n'$summaries
 }

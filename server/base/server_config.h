@@ -35,6 +35,8 @@ struct ServerConfig {
   int header_timeout_s = 10;
   int idle_timeout_s = 60;
   int transfer_timeout_s = 20;
+  int retry_ms =
+      500;          ///< until what the world set back is tried again, at first; no key of the file
   int drain_s = 5;  ///< for passes under way, once the service is told to end
 
   std::uint64_t queue_length = 20'000;  ///< renders and images of sweeps

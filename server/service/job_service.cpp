@@ -48,7 +48,7 @@ JobService::JobService(const api::Catalog& catalog, const ServerConfig& config,
   janitor_.clean_up();
   workers_ = std::make_unique<WorkerPool>(
       Workshop{catalog, store, artifacts, metrics, live_films_, explorables_, setbacks_, memory_,
-               std::move(engine), config.threads_per_worker},
+               std::move(engine), config.retry_ms, config.threads_per_worker},
       config.workers, [this] { changes_.tell(); }, [this](int others) { return intake(others); });
   house_keeper_ = std::jthread([this](std::stop_token ended) { keep_house(std::move(ended)); });
 }

@@ -23,15 +23,15 @@ using api::ProblemCode;
 // What is refused so often in a row, though its file can be read, or though a share of the memory
 // was free for it, is refused for good.
 constexpr int most_refusals = 3, most_without_memory = 5;
-constexpr std::int64_t shortest_wait_ms = 500, longest_wait_ms = 30'000;
+constexpr std::int64_t longest_wait_ms = 30'000;
 
 constexpr std::int64_t wait_for_memory_ms = 300;
 
 constexpr const char* disk_refuses = "The disk of the service is full or cannot be used.";
 
-std::chrono::milliseconds wait_after(int attempts) {
+std::chrono::milliseconds wait_after(int attempts, std::int64_t at_first_ms) {
   return std::chrono::milliseconds(
-      std::min(longest_wait_ms, shortest_wait_ms << std::clamp(attempts, 0, 8)));
+      std::min(longest_wait_ms, at_first_ms << std::clamp(attempts, 0, 8)));
 }
 
 const char* pointer_of(SceneError::Part part) {
@@ -100,8 +100,8 @@ void TaskRunner::refuse(const Task& task, const api::RenderRequest& request,
                         const SceneError& error) {
   const auto resource = resource_of(request, workshop_.catalog, error.part);
   if (resource) {
-    const bool readable = resource->of == Setback::Of::request && !error.unavailable &&
-                          can_be_read(resource->file);
+    const bool readable =
+        resource->of == Setback::Of::request && !error.unavailable && can_be_read(resource->file);
     if (wait(task, {resource->of, "A file that a render needs cannot be read.", error.what()},
              readable ? most_refusals : any_number))
       return;
@@ -193,7 +193,7 @@ void TaskRunner::fail(const Task& task, const api::Problem& problem) {
 /// The task comes again after a while, which grows with each time; false where it has come so often
 /// in a row.
 bool TaskRunner::wait(const Task& task, const Setback& setback, int most) {
-  const auto delay = wait_after(task.attempts);
+  const auto delay = wait_after(task.attempts, workshop_.retry_ms);
   const int times = workshop_.setbacks.add(task.job_id, setback, delay);
   if (times >= most) return false;
   if ((times & (times - 1)) == 0)

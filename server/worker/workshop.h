@@ -25,6 +25,7 @@ struct Workshop {
   Setbacks& setbacks;
   MemoryBudget& memory;
   Engine engine;
+  int retry_ms = 500;  ///< until a render that was set back is tried again, at first
   int threads = 0;  ///< for each render; 0: all cores
 
   int cores() const;  ///< of a render

@@ -192,6 +192,7 @@ class TestService {
     ServerConfig config = read_server_config(file);
     config.workers = options.workers;
     config.threads_per_worker = 1;
+    config.retry_ms = 100;
     config.memory_bytes = options.memory_bytes;
     config.artifact_bytes = options.artifact_bytes;
     config.keep_days = options.keep_days;

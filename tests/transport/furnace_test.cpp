@@ -154,11 +154,11 @@ void expect_furnaces(unsigned stride, std::uint32_t samples) {
   EXPECT_GT(pictures * stride, row * 9 / 10);
   for (const auto& [name, level] : levels) {
     EXPECT_NEAR(level.off(), 0, 4 * level.standard_error()) << name;
-    EXPECT_LT(level.standard_error(), 7e-4 * std::sqrt(32.0 / samples)) << name;
+    EXPECT_LT(level.standard_error(), 1e-3 * std::sqrt(32.0 / samples)) << name;
   }
 }
 
-TEST(WhiteFurnace, AFifthOfTheTableVanishes) { expect_furnaces(5, 32); }
+TEST(WhiteFurnace, ANinthOfTheTableVanishes) { expect_furnaces(9, 32); }
 
 TEST(LongWhiteFurnace, TheTableVanishes) { expect_furnaces(1, 512); }
 
