@@ -1,6 +1,6 @@
 #pragma once
 
-// What the transport is called by. trace_tile() finds the shape, trace_body() (tracer.h) the
+// What the transport is called by. trace_tile() finds the shape, trace_body() (trace_body.inl) the
 // interface and the interior: a tracer for each combination, compiled shape by shape in instances/.
 
 #include <cstdint>
