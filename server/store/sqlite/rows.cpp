@@ -1,6 +1,7 @@
 #include "server/store/sqlite/rows.h"
 
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "server/store/store_error.h"
 
@@ -15,6 +16,20 @@ api::JobState state_of(const std::string& name) {
   if (!state) throw StoreError(StoreError::Kind::corrupt, "the job store: an unknown job state");
   return *state;
 }
+
+namespace {
+
+/// What was found made is as far as its stats say.
+void progress_of_stats(const std::string& stats, Progress& progress) {
+  const auto known = nlohmann::json::parse(stats, nullptr, false);
+  if (!known.is_object()) return;
+  if (const auto samples = known.find("samples"); samples != known.end() && samples->is_number())
+    progress.samples = samples->get<std::uint32_t>();
+  if (const auto error = known.find("relative_error"); error != known.end() && error->is_number())
+    progress.relative_error = error->get<double>();
+}
+
+}  // namespace
 
 Job Query<Job>::read(const Statement& row) {
   Job job{.id = row.text(0),
@@ -36,6 +51,7 @@ Job Query<Job>::read(const Statement& row) {
       row.optional_real(10).value_or(std::numeric_limits<double>::quiet_NaN());
   job.progress.seconds = row.real(11);
   job.progress.eta_seconds = row.optional_real(12);
+  if (job.cached && job.stats) progress_of_stats(*job.stats, job.progress);
   if (!row.is_null(16))
     job.sweep_image = SweepImage{row.text(16), static_cast<std::uint32_t>(row.integer(17))};
   return job;

@@ -239,6 +239,20 @@ TEST_P(JobStoreTest, AQueueThatIsFullTakesWhatIsThereAlreadyOnly) {
   EXPECT_TRUE(known.stored.cached);
 }
 
+TEST_P(JobStoreTest, WhatWasMadeBeforeIsAsFarAsItsStatsSay) {
+  submit(store);
+  const Task task = *store.claim(Priority::interactive);
+  const std::string content = store.pictures(task.job_id).at(0).content,
+                    stats = R"({"samples":8,"relative_error":0.25,"seconds":1})";
+  EXPECT_TRUE(store.finish(task, a_completion(), stats, {{content, "a.exr", 10, 12, stats}}));
+  NewJob again = a_job();
+  again.content = content;
+  const auto known = *store.submit(again);
+  EXPECT_TRUE(known.stored.cached);
+  EXPECT_EQ(known.stored.progress.samples, 8u);
+  EXPECT_EQ(known.stored.progress.relative_error, 0.25);
+}
+
 TEST_P(JobStoreTest, ARenderThatTakesLongBecomesBatchWork) {
   submit(store);
   EXPECT_TRUE(store.complete(*store.claim(Priority::interactive), a_completion(9), {1, 4, 4}));
