@@ -20,7 +20,7 @@ namespace {
 // Deaths at which the job was alone, since its last complete pass. A kill from outside that comes
 // soon after the start of a task says little of it, but where it comes again and again: so ends
 // what takes all memory at once.
-constexpr int most_deaths = 2, most_early_kills = 4;
+constexpr int most_deaths = 2, most_early_kills = 8;
 
 std::vector<std::string> first_column(sql::Connection& writer, const char* query) {
   std::vector<std::string> texts;

@@ -5,13 +5,16 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/server/fixture.h"
 #include "tests/server/service.h"
 #include "tests/server/temp_folder.h"
+#include "tests/support/sanitized.h"
 
 namespace translucube::server::test {
 namespace {
@@ -125,6 +128,28 @@ TEST_F(HostileRequestsTest, DamagedEnvironmentsEndNothing) {
     EXPECT_EQ(running.client().Get("/livez")->status, 200);
   }
   EXPECT_EQ(ask(running.client(), request())["state"], "succeeded");
+}
+
+TEST_F(HostileRequestsTest, PassesOfHoursEndWhenTheyAreCanceled) {
+  Service running = service();
+  json hours = request();
+  hours["material"] = {{"cube", {{"absorption", 0}, {"roughness", 0}, {"scattering", 0.9999}}},
+                       {"anisotropy", 0.9}};
+  hours["image"] = {{"width", 512}, {"height", 512}};
+  std::vector<std::string> links;
+  for (int seed = 1; seed <= 4; ++seed) {  // more than there are workers
+    hours["seed"] = seed;
+    const auto posted = running.client().Post("/v1/renders", hours.dump(), "application/json");
+    ASSERT_EQ(posted->status, 202);
+    links.push_back(posted->get_header_value("Location"));
+  }
+  ASSERT_TRUE(eventually([&] { return running.get(links[0])["state"] == "running"; }));
+  const auto start = std::chrono::steady_clock::now();
+  for (const std::string& link : links)
+    EXPECT_EQ(running.client().Post(link + "/cancel", "", "")->status, 200);
+  EXPECT_EQ(ask(running.client(), request())["state"], "succeeded");
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(took.count(), sanitized ? 20 : 2);
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST_F(RecoveryTest, AJobThatWasAloneAtTwoDeathsHasFailedAndSaysSo) {
 
 TEST_F(RecoveryTest, AKillFromOutsideIsNoCrashUnlessTheTaskTookItsTime) {
   const std::string early = submit(*store);
-  for (int kill = 1; kill <= 4; ++kill) {
+  for (int kill = 1; kill <= 8; ++kill) {
     EXPECT_EQ(state(early), JobState::queued) << kill;
     ASSERT_EQ(claim()->job_id, early);
     start(false);
