@@ -95,9 +95,13 @@ struct Sockets {
   /// An answer to a small request in good time.
   void expect_service() {
     const auto start = steady_clock::now();
-    Wire wire(server.port());
-    EXPECT_TRUE(wire.send(get));
-    EXPECT_THAT(wire.receive(), StartsWith("HTTP/1.1 200"));
+    std::string answer;
+    do {  // a place is free a moment after its client has its answer
+      Wire wire(server.port());
+      EXPECT_TRUE(wire.send(get));
+      answer = wire.receive();
+    } while (answer.starts_with("HTTP/1.1 503") && steady_clock::now() - start < seconds(5));
+    EXPECT_THAT(answer, StartsWith("HTTP/1.1 200"));
     EXPECT_LT(steady_clock::now() - start, seconds(5));
   }
 
