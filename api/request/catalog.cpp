@@ -158,6 +158,7 @@ Catalog without_limits(Catalog catalog) {
   constexpr auto most = std::numeric_limits<std::uint32_t>::max();
   constexpr auto most_bytes = std::numeric_limits<std::uint64_t>::max();
   catalog.limits = {most_bytes, most_bytes, most, any, any, most};
+  catalog.knows_files = true;
   return catalog;
 }
 

@@ -37,6 +37,7 @@ struct Catalog {
   std::filesystem::path display_config;             ///< OpenColorIO config
   std::vector<std::filesystem::path> file_folders;  ///< from which requests may name files
   bool any_file = false;                            ///< the command line: any path
+  bool knows_files = false;  ///< what is in the files that requests name was looked at before
 };
 
 /// Reads a catalog from service.json, all but its section `server`, and from the folders it names.
@@ -44,7 +45,8 @@ struct Catalog {
 Catalog load_catalog(ConfigFile& service_json);
 Catalog load_catalog(const std::filesystem::path& service_json);
 
-/// The catalog for what was accepted before: it stays legal, whatever the limits are now.
+/// The catalog for what was accepted before: it stays legal, whatever the limits are now, and what
+/// is in its files is not looked at again.
 Catalog without_limits(Catalog catalog);
 
 }  // namespace translucube::api

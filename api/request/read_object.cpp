@@ -65,7 +65,7 @@ void read_mesh(FieldReader& reader, const Catalog& catalog, ObjectRequest& out, 
   const std::string where = reader.pointer_to("file");
   auto path = resolve_file(*file, where, catalog, faults);
   if (!path) return;
-  if (check_file(check_mesh, *path, where, faults)) out = MeshRequest{std::move(*path)};
+  if (check_file(check_mesh, *path, where, catalog, faults)) out = MeshRequest{std::move(*path)};
 }
 
 std::string type_of(const ObjectRequest& request) {

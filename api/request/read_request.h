@@ -50,9 +50,9 @@ std::optional<SpectralAbsorber> read_spectrum(FieldReader& object);
 std::optional<std::string> resolve_file(const std::string& file, const std::string& pointer,
                                         const Catalog& catalog, Faults& faults);
 
-/// Whether such a file is what it has to be, by the renderer's check; what it cannot tell now counts
-/// as right.
+/// Whether such a file is what it has to be, by the renderer's check, unless the catalog knows it
+/// already; what it cannot tell now counts as right.
 bool check_file(void (*check)(const std::filesystem::path&), const std::string& file,
-                const std::string& pointer, Faults& faults);
+                const std::string& pointer, const Catalog& catalog, Faults& faults);
 
 }  // namespace translucube::api

@@ -18,7 +18,7 @@ constexpr Range radiance_range{0, 1e9};
 void read_map(const std::string& file, const std::string& pointer, const Catalog& catalog,
               EnvironmentRequest& out, Faults& faults) {
   auto path = resolve_file(file, pointer, catalog, faults);
-  if (path && check_file(check_environment, *path, pointer, faults))
+  if (path && check_file(check_environment, *path, pointer, catalog, faults))
     out.source = FileEnvironment{std::move(*path)};
 }
 

@@ -167,6 +167,16 @@ TEST_F(SceneFiles, EnvironmentFileInAnAllowedFolderIsTaken) {
             "there is no such file");
 }
 
+TEST_F(SceneFiles, OfWhatWasAcceptedAreNotLookedAtAgain) {
+  const auto map = folder.write("allowed/sky.exr", "no picture");
+  fault_at("/scene/environment/file", environment_file("sky.exr"), catalog);
+  const RenderRequest request = accepted(environment_file("sky.exr"), without_limits(catalog));
+  EXPECT_EQ(std::get<FileEnvironment>(request.environment.source).file, map.string());
+  EXPECT_EQ(
+      fault_at("/scene/environment/file", environment_file("none.exr"), without_limits(catalog)),
+      "there is no such file");
+}
+
 TEST_F(SceneFiles, CommandLineMayNameAnyFile) {
   catalog.any_file = true;
   accepted(mesh(secret.string()), catalog);
