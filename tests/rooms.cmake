@@ -3,8 +3,8 @@
 # part of it. Layers: server -> api -> renderer -> picture.
 
 set(rooms
-  "picture/sandbox:"
   "picture: picture/exr picture/oiio picture/sandbox"
+  "picture/sandbox: picture"
   "picture/exr: picture"
   "picture/oiio: picture"
   "picture/light: picture picture/exr picture/oiio"

@@ -16,6 +16,7 @@
 #include <optional>
 #include <utility>
 
+#include "picture/companion.h"
 #include "picture/sandbox/answer.h"
 #include "picture/sandbox/confine.h"
 
@@ -70,22 +71,11 @@ int open_file(const fs::path& file, const SandboxLimits& limits) {
   return number;
 }
 
-/// The reader lies beside the program where it was built, and in ../lib/translucube where it is
-/// installed.
-fs::path reader_program() {
-  std::error_code error;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  constexpr const char* name = "translucube_reader";
-  const fs::path installed = folder / "../lib/translucube" / name;
-  return fs::exists(installed, error) ? installed : folder / name;
-}
-
 /// Ends and forgets a process whatever happens.
 class Child {
  public:
   Child(const std::string& kind, int file, int answer) {
-    const fs::path program = reader_program();
-    std::string name = program.string(), argument = kind;
+    std::string name = companion("translucube_reader").string(), argument = kind;
     std::array<char*, 3> arguments{name.data(), argument.data(), nullptr};
     std::array<char*, 1> environment{nullptr};
     posix_spawn_file_actions_t actions;
