@@ -10,6 +10,7 @@
 
 #include "picture/image_io.h"
 #include "picture/srgb.h"
+#include "picture/stored_picture.h"
 
 namespace translucube {
 
@@ -47,6 +48,19 @@ inline void check_not_cut_off(std::int64_t width, std::int64_t height, std::size
 /// Whether a colorspace as ImageMetadata names it has the sRGB transfer curve.
 inline bool is_srgb(const std::string& colorspace) {
   return colorspace.starts_with("sRGB/") && colorspace != "sRGB/raw";
+}
+
+/// What a colorspace as ImageMetadata names it says of a stored picture's numbers: nothing where it
+/// is empty. Throws ImageError for those of a display other than sRGB.
+inline void read_own_colorspace(const std::string& colorspace, StoredPicture& stored) {
+  if (colorspace.empty()) return;
+  if (is_srgb(colorspace))
+    stored.transfer.kind = TransferCurve::Kind::srgb;
+  else if (colorspace.find('/') != colorspace.npos)
+    throw ImageError("holds the code values of a display (" + colorspace.substr(0, 64) +
+                     "), not light");
+  else
+    stored.transfer.kind = TransferCurve::Kind::linear;
 }
 
 /// Undoes the sRGB transfer curve.

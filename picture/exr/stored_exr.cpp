@@ -92,11 +92,7 @@ void read_colors(const Imf::Header& header, StoredPicture& stored) {
         Chromaticities{{.7347, .2653}, {.0, 1.0}, {.0001, -.0770}, {.32168, .33767}};
   }
   // Our own files may hold what a display shows.
-  const std::string space = text_attribute(header, colorspace_attribute);
-  if (is_srgb(space))
-    stored.transfer.kind = TransferCurve::Kind::srgb;
-  else if (space.find('/') != space.npos)
-    throw ImageError("holds the code values of a display (" + space.substr(0, 64) + "), not light");
+  read_own_colorspace(text_attribute(header, colorspace_attribute), stored);
 }
 
 StoredPicture read_part(Imf::InputPart& part, std::size_t bytes) {

@@ -8,9 +8,9 @@
 
 #include <mutex>
 
-#include "picture/oiio/tags.h"
 #include "picture/oiio/file.h"
 #include "picture/oiio/metadata.h"
+#include "picture/oiio/tags.h"
 
 namespace translucube {
 namespace {
@@ -54,15 +54,7 @@ void read_meaning(std::span<const char> bytes, LightFormat format, const OIIO::I
     throw ImageError("is in Adobe RGB, without a profile");
 
   // Our own files say more.
-  const std::string written = metadata_of(spec).colorspace;
-  if (written.empty()) return;
-  if (is_srgb(written))
-    stored.transfer.kind = TransferCurve::Kind::srgb;
-  else if (written.find('/') != written.npos)
-    throw ImageError("holds the code values of a display (" + written.substr(0, 64) +
-                     "), not light");
-  else
-    stored.transfer.kind = TransferCurve::Kind::linear;
+  read_own_colorspace(metadata_of(spec).colorspace, stored);
 }
 
 }  // namespace
