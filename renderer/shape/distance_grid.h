@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <new>
@@ -9,6 +10,12 @@
 #include "renderer/base/vec.h"
 
 namespace translucube {
+
+/// The distance to a face of a surface.
+struct NearestFace {
+  double distance = 0;
+  std::uint32_t face = 0;
+};
 
 /// What is known of a distance: it lies in [least, most].
 struct DistanceBounds {
@@ -20,10 +27,15 @@ struct DistanceBounds {
 /// all around. Threads may ask at once: a sample is a function of its cell alone, whoever takes it.
 class DistanceGrid {
  public:
+  struct Sample {
+    float distance = 0;
+    std::uint32_t face = 0;
+  };
+
   explicit DistanceGrid(int cells)
       : cells_(cells),
         samples_(
-            static_cast<float*>(std::calloc(std::size_t(cells) * cells * cells, sizeof(float)))) {
+            static_cast<Sample*>(std::calloc(std::size_t(cells) * cells * cells, sizeof(Sample)))) {
     if (samples_ == nullptr) throw std::bad_alloc();
   }
 
@@ -32,17 +44,26 @@ class DistanceGrid {
   /// free.
   template <class Nearest>
   DistanceBounds at(Vec3 p, double keen, Nearest&& nearest) const {
-    const int x = index(p.x), y = index(p.y), z = index(p.z);
-    const std::atomic_ref sample(
-        samples_.get()[x + std::size_t(cells_) * (y + std::size_t(cells_) * z)]);
-    const Vec3 center{coordinate(x), coordinate(y), coordinate(z)};
-    float found = sample.load(std::memory_order_relaxed);
-    if (found == 0) {
-      found = static_cast<float>(nearest(center) + rounding);
-      sample.store(found, std::memory_order_relaxed);
-    }
+    Vec3 center;
+    const double found = sample(p, nearest, center).distance;
     const double way = length(p - center);
     return {keen * (found - 2 * rounding) - way, found + way};
+  }
+
+  /// The sample of the cell that p lies in; `center`: where it was taken.
+  template <class Nearest>
+  Sample sample(Vec3 p, Nearest&& nearest, Vec3& center) const {
+    const int x = index(p.x), y = index(p.y), z = index(p.z);
+    const std::atomic_ref known(
+        samples_.get()[x + std::size_t(cells_) * (y + std::size_t(cells_) * z)]);
+    center = {coordinate(x), coordinate(y), coordinate(z)};
+    Sample found = known.load(std::memory_order_relaxed);
+    if (found.distance == 0) {
+      const NearestFace face = nearest(center);
+      found = {static_cast<float>(face.distance + rounding), face.face};
+      known.store(found, std::memory_order_relaxed);
+    }
+    return found;
   }
 
  private:
@@ -56,10 +77,10 @@ class DistanceGrid {
 
   int cells_;
   struct Free {
-    void operator()(float* samples) const { std::free(samples); }
+    void operator()(Sample* samples) const { std::free(samples); }
   };
   /// 0: not yet taken. From calloc, whose pages take no memory until they are written.
-  std::unique_ptr<float[], Free> samples_;
+  std::unique_ptr<Sample[], Free> samples_;
 };
 
 }  // namespace translucube

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "renderer/shape/distance_grid.h"
+#include "renderer/shape/face_neighbours.h"
 #include "renderer/shape/mesh.h"
 
 namespace translucube {
@@ -36,11 +37,8 @@ enum class Side { any, front, back };
 }  // namespace
 
 struct MeshGeometry {
-  struct Face {
-    Vec3 origin, normal;
-  };
-  std::vector<Face> faces;
-  std::vector<std::array<Vec3, 2>> corners;  ///< of each face, beside its origin
+  std::vector<Facet> facets;
+  FaceNeighbours neighbours;
   Device device;
   EmbreeScene scene;
   DistanceGrid coarse{32}, fine{128};
@@ -58,11 +56,11 @@ struct Query {
 
 /// Distance along the query's ray to the plane of a face, or infinity from the wrong side.
 double distance_to(const Query& q, unsigned face) {
-  const MeshGeometry::Face& f = q.geometry->faces[face];
+  const Facet& f = q.geometry->facets[face];
   const double facing = dot(q.d, f.normal);
   if (facing == 0 || (q.side == Side::front && facing > 0) || (q.side == Side::back && facing < 0))
     return std::numeric_limits<double>::infinity();
-  return dot(f.origin - q.p, f.normal) / facing;
+  return dot(f.a - q.p, f.normal) / facing;
 }
 
 void accept_hit(const RTCFilterFunctionNArguments* args) {
@@ -93,7 +91,8 @@ bool first_hit(const MeshGeometry& geometry, Vec3 p, Vec3 d, double t_max, Side 
   hit.t = std::max(0.0, distance_to(q, ray.hit.primID));
   if (hit.t >= t_max) return false;
   hit.p = p + hit.t * d;
-  hit.n = geometry.faces[ray.hit.primID].normal;
+  hit.n = geometry.facets[ray.hit.primID].normal;
+  hit.face = ray.hit.primID;
   return true;
 }
 
@@ -105,13 +104,12 @@ double distance_squared_to_edge(Vec3 p, Vec3 a, Vec3 b) {
 }
 
 double distance_squared_to_face(const MeshGeometry& geometry, Vec3 p, unsigned face) {
-  const MeshGeometry::Face& f = geometry.faces[face];
-  const Vec3 a = f.origin, b = geometry.corners[face][0], c = geometry.corners[face][1];
+  const auto& [a, b, c, normal] = geometry.facets[face];
   const auto above = [&](Vec3 from, Vec3 to) {
-    return dot(cross(to - from, p - from), f.normal) > 0;
+    return dot(cross(to - from, p - from), normal) > 0;
   };
   if (above(a, b) && above(b, c) && above(c, a)) {
-    const double height = dot(p - a, f.normal);
+    const double height = dot(p - a, normal);
     return height * height;
   }
   return std::min({distance_squared_to_edge(p, a, b), distance_squared_to_edge(p, b, c),
@@ -123,6 +121,7 @@ struct NearestQuery {
   Vec3 p;
   double keen;      ///< how much of the distance found so far is still searched
   double distance;  ///< of the nearest face so far
+  unsigned face = 0;
 };
 
 /// More than single precision moves a point of the unit ball or the boxes of Embree's tree, in
@@ -134,6 +133,7 @@ bool consider_face(RTCPointQueryFunctionArguments* args) {
   const double d2 = distance_squared_to_face(*q.geometry, q.p, args->primID);
   if (d2 >= q.distance * q.distance) return false;
   q.distance = std::sqrt(d2);
+  q.face = args->primID;
   args->query->radius = static_cast<float>(q.keen * q.distance + point_margin);
   return true;
 }
@@ -141,14 +141,14 @@ bool consider_face(RTCPointQueryFunctionArguments* args) {
 /// The distance of p to the nearest face, known to be at most `most`, to a factor of 1 / keen: on a
 /// round body thousands of faces are as good as equally near, and to tell which is nearest takes
 /// fifty times as long as to tell how near they are.
-DistanceBounds nearest_face(const MeshGeometry& geometry, Vec3 p, double most, double keen) {
+NearestFace nearest_face(const MeshGeometry& geometry, Vec3 p, double most, double keen) {
   NearestQuery q{&geometry, p, keen, most};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   RTCPointQuery query{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), 0,
                       static_cast<float>(most + point_margin)};
   rtcPointQuery(geometry.scene.get(), &query, &context, consider_face, &q);
-  return {keen * q.distance, q.distance};
+  return {q.distance, q.face};
 }
 
 }  // namespace
@@ -183,22 +183,40 @@ bool Mesh::inside(Vec3 p) const {
          dot(hit.n, d) > 0;
 }
 
+constexpr double keen_sample = 0.9, unit_ball = 4;
+
 DistanceBounds Mesh::distance_bounds(Vec3 p) const {
-  constexpr double keen = 0.9, unit_ball = 4;
   return geometry_->coarse.at(
-      p, keen, [&](Vec3 q) { return nearest_face(*geometry_, q, unit_ball, keen).most; });
+      p, keen_sample, [&](Vec3 q) { return nearest_face(*geometry_, q, unit_ball, keen_sample); });
 }
 
 DistanceBounds Mesh::finer_distance_bounds(Vec3 p) const {
-  constexpr double keen = 0.9;
-  return geometry_->fine.at(p, keen, [&](Vec3 q) {
-    return nearest_face(*geometry_, q, distance_bounds(q).most, keen).most;
+  return geometry_->fine.at(p, keen_sample, [&](Vec3 q) {
+    return nearest_face(*geometry_, q, distance_bounds(q).most, keen_sample);
   });
+}
+
+std::uint32_t Mesh::face_near(Vec3 p) const {
+  Vec3 center;
+  return geometry_->fine
+      .sample(
+          p,
+          [&](Vec3 q) { return nearest_face(*geometry_, q, distance_bounds(q).most, keen_sample); },
+          center)
+      .face;
 }
 
 DistanceBounds Mesh::distance(Vec3 p, double most) const {
   constexpr double keen = 0.6;  // by CPU time (tests/bench/speed/meshes.cpp)
-  return nearest_face(*geometry_, p, most, keen);
+  const double found = nearest_face(*geometry_, p, most, keen).distance;
+  return {keen * found, found};
+}
+
+Mesh::Mesh(std::shared_ptr<const MeshGeometry> geometry)
+    : geometry_(std::move(geometry)), facets_(geometry_->facets) {}
+
+std::span<const std::uint32_t> Mesh::neighbours(std::uint32_t face) const {
+  return geometry_->neighbours.of(face);
 }
 
 BuiltMesh build_mesh(const TriangleMesh& mesh) {
@@ -238,11 +256,11 @@ BuiltMesh build_mesh(const TriangleMesh& mesh) {
   }
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t v : t) *indices++ = v;
-    const Vec3 a = rounded[t[0]], n = cross(rounded[t[1]] - a, rounded[t[2]] - a);
+    const Vec3 a = rounded[t[0]], b = rounded[t[1]], c = rounded[t[2]], n = cross(b - a, c - a);
     const double size = length(n);
-    geometry->faces.push_back({a, size > 0 ? n * (1 / size) : Vec3{}});
-    geometry->corners.push_back({rounded[t[1]], rounded[t[2]]});
+    geometry->facets.push_back({a, b, c, size > 0 ? n * (1 / size) : Vec3{}});
   }
+  geometry->neighbours = FaceNeighbours(mesh);
   rtcCommitGeometry(triangles);
   rtcAttachGeometry(geometry->scene.get(), triangles);
   rtcReleaseGeometry(triangles);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "renderer/shape/distance_grid.h"
 #include "renderer/shape/shape.h"
@@ -10,10 +11,24 @@ namespace translucube {
 
 struct MeshGeometry;
 
+/// A triangle, counter-clockwise seen from outside.
+struct Facet {
+  Vec3 a, b, c, normal;
+
+  /// Whether a ray from inside passes through it, wherever else it passes (Moeller and Trumbore
+  /// 1997).
+  bool lets_out(Vec3 p, Vec3 d) const {
+    const Vec3 ab = b - a, ac = c - a, across = cross(d, p - a);
+    const double volume = dot(d, cross(ab, ac));
+    const double u = dot(ac, across), v = -dot(ab, across);
+    return volume > 0 && u >= 0 && v >= 0 && u + v <= volume;
+  }
+};
+
 /// A closed triangle mesh, intersected by Embree (embree_mesh.cpp).
 class Mesh {
  public:
-  explicit Mesh(std::shared_ptr<const MeshGeometry> geometry) : geometry_(std::move(geometry)) {}
+  explicit Mesh(std::shared_ptr<const MeshGeometry> geometry);
 
   bool convex() const;
   bool inside(Vec3 p) const;
@@ -27,8 +42,15 @@ class Mesh {
   bool intersect_outside(Vec3 p, Vec3 d, Hit& hit) const;
   bool intersect_inside(Vec3 p, Vec3 d, double t_max, Hit& hit) const;
 
+  const Facet& facet(std::uint32_t face) const { return facets_[face]; }
+  /// The faces that share a vertex with one.
+  std::span<const std::uint32_t> neighbours(std::uint32_t face) const;
+  /// A face that is about the nearest.
+  std::uint32_t face_near(Vec3 p) const;
+
  private:
   std::shared_ptr<const MeshGeometry> geometry_;
+  std::span<const Facet> facets_;  ///< of the geometry
 };
 
 /// A mesh in its own unit, ready to intersect, and where it was.

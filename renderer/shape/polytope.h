@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "renderer/shape/shape.h"
 
@@ -30,6 +31,8 @@ class Polytope {
     for (const Plane& plane : planes_) least = std::min(least, depth(plane, p));
     return least;
   }
+
+  std::span<const Plane> planes() const { return planes_; }
 
   bool intersect_outside(Vec3 p, Vec3 d, Hit& hit) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -67,9 +70,10 @@ class Polytope {
 
  private:
   static double depth(const Plane& plane, Vec3 p) { return plane.offset - dot(plane.n, p); }
-  static void land(Vec3 p, Vec3 d, double t, const Plane& face, Hit& hit) {
+  void land(Vec3 p, Vec3 d, double t, const Plane& face, Hit& hit) const {
     const Vec3 q = p + t * d;
-    hit = {q + depth(face, q) * face.n, face.n, t};
+    hit = {q + depth(face, q) * face.n, face.n, t,
+           static_cast<std::uint32_t>(&face - planes_.data())};
   }
 
   std::array<Plane, faces> planes_;

@@ -4,14 +4,17 @@
 // nothing of optics, of scenes or of paths. Lengths are in the body's own unit (sphere: its radius;
 // mesh: its bounding radius), centred at the origin.
 
+#include <cstdint>
+
 #include "renderer/base/vec.h"
 
 namespace translucube {
 
 struct Hit {
-  Vec3 p;        ///< on the surface
-  Vec3 n;        ///< outward unit normal
-  double t = 0;  ///< distance travelled
+  Vec3 p;                  ///< on the surface
+  Vec3 n;                  ///< outward unit normal
+  double t = 0;            ///< distance travelled
+  std::uint32_t face = 0;  ///< of a body with flat faces
 };
 
 // Every shape answers:

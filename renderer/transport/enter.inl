@@ -18,6 +18,7 @@ void Tracer<Body>::arrive_outside(Path path) {
   if (!shape_.intersect_outside(path.p, path.d, hit)) return escape(path);
   path.p = hit.p;
   path.n = hit.n;
+  path.vertex = {};
   collector_.note("enter", path);
   if (!count_event(path)) return;
   if (is_smooth_at(path)) {

@@ -24,6 +24,7 @@ void Tracer<Body>::escape(const Path& path) {
   const std::size_t i = batch.size++;
   batch.direction.set(i, path.d);
   escapes.from[i] = {path.n, path.length, path.weight, path.pdf, path.start, path.pixel, path.tint};
+  if constexpr (Body::connects_by_facets) escapes.from[i].flight = {path.vertex, path.vertex.d};
   if (batch.size == EnvironmentBatch::capacity) meet_environment(escapes);
 }
 
@@ -36,7 +37,12 @@ void Tracer<Body>::meet_environment(Escapes& escapes) {
     const Escape& from = escapes.from[i];
     const EnvironmentValue& light = batch.value[i];
     Rgb radiance = light.radiance;
-    if (from.pdf != Path::not_looked_for) {
+    if constexpr (Body::connects_by_facets) {
+      const Path::Vertex& vertex = from.flight.from;
+      if (vertex.connected())
+        radiance = radiance * static_cast<float>(
+                                  connector_.share_of_walk(vertex, from.flight.d, from.n, light));
+    } else if (from.pdf != Path::not_looked_for) {
       const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
       if constexpr (Body::connects && Body::smooth) {
         const Rgb expected = connector_.expected(from.n, from.start) * Connector::far_share;

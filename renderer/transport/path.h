@@ -42,6 +42,7 @@ struct Path : Particle {
     double depth2 = 0;  ///< 1 - |p|^2
     double flight = 0;  ///< length from there to the boundary
     double phase = 0;  ///< the density of d from there, per solid angle; 0 where it did not connect
+    Vec3 d;            ///< along the flight, where the connector asks for it
     bool connected() const { return phase > 0; }
   } vertex;
 

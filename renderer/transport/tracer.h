@@ -28,8 +28,9 @@
 //                     body, dipole, print): one light for each path         escape.inl
 //   microfacet light  at each collision with a microfacet, on either side   cross.inl
 //                     of the interface: eight lights of the tile's list
-//   connections       from scatterers in a sphere through its boundary,     walk.inl,
-//                     smooth or rough                                       sphere/*_connector.h
+//   connections       from scatterers through the boundary: of a sphere,    walk.inl,
+//                     smooth or rough; of flat faces, smooth                sphere/*_connector.h,
+//                                                                           facets/
 //
 // What runs inside, by interior and shape:
 //
@@ -40,8 +41,8 @@
 //   Lambertian     return_diffuse()                     the same
 //   dense pigment  walk_alone() in a half space         the same
 //   scattering     walk_together(), in SIMD;            walk_alone(), in a mesh with a Clearing;
-//                  vertices connect to lights by        nothing connects
-//                  SmoothConnector or RoughConnector
+//                  vertices connect to lights by        vertices connect through smooth flat
+//                  SmoothConnector or RoughConnector    faces by FacetConnector
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +56,7 @@
 #include "renderer/optics/lambertian.h"
 #include "renderer/optics/microsurface_batch.h"
 #include "renderer/transport/collector.h"
+#include "renderer/transport/facets/facet_connector.h"
 #include "renderer/transport/incident_point.h"
 #include "renderer/transport/path.h"
 #include "renderer/transport/sphere/rough_connector.h"
@@ -89,8 +91,13 @@ struct Body {
   static constexpr bool rolls = inside.scatters && std::is_same_v<Shape, Sphere>;
   /// Scattering vertices connect to lights through the boundary: those that walks together report.
   static constexpr bool connects = walks_together;
-  using Connector = std::conditional_t<!connects, NoConnector,
-                                       std::conditional_t<smooth, SmoothConnector, RoughConnector>>;
+  /// Scattering vertices of walks that go alone connect through flat faces.
+  static constexpr bool connects_by_facets =
+      inside.scatters && smooth && (std::is_same_v<Shape, Mesh> || std::is_same_v<Shape, Polytope>);
+  using Connector = std::conditional_t<
+      connects_by_facets, FacetConnector<Shape>,
+      std::conditional_t<!connects, NoConnector,
+                         std::conditional_t<smooth, SmoothConnector, RoughConnector>>>;
 };
 
 template <class Body>
@@ -124,7 +131,7 @@ class Tracer {
       walk();
       leave();
     }
-    connector_.flush();
+    if constexpr (!Body::connects_by_facets) connector_.flush();
     for (Escapes& escapes : escapes_) meet_environment(escapes);
     collector_.flush();
   }
@@ -137,7 +144,9 @@ class Tracer {
   Connector make_connector(const Scene& scene, std::uint64_t key) {
     // Vertices connect through one interface: where there are two, the walk finds the light.
     static const LightList none;
-    if constexpr (Body::connects && !Body::smooth)
+    if constexpr (Body::connects_by_facets)
+      return Connector(scene, shape_, collector_, key);
+    else if constexpr (Body::connects && !Body::smooth)
       return Connector(scene, collector_, scene.oiled ? none : lights_);
     else
       return Connector(scene, collector_, key);
@@ -167,6 +176,9 @@ class Tracer {
   template <class Place>
   bool walk_to_boundary(const Place& place, const Medium& medium, Particle& particle, Rng& rng,
                         Hit& hit);
+  /// At a collision: looks for light, then a new direction or a large step.
+  template <class Place>
+  void collide_alone(Place&& around, Path& path);
   /// Follows all the light that crosses the body unscattered, up to its end; what is scattered on
   /// the way goes to walk() as one path.
   void follow_unscattered(Path path);
@@ -219,6 +231,12 @@ class Tracer {
     Vec3 n;
     double length, weight, pdf;
     std::uint32_t start, pixel, tint;
+    struct Nothing {};
+    struct Flight {
+      Path::Vertex from;
+      Vec3 d;
+    };
+    [[no_unique_address]] std::conditional_t<Body::connects_by_facets, Flight, Nothing> flight{};
   };
   struct Escapes {
     EnvironmentBatch batch;

@@ -30,9 +30,10 @@ bool fly(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng, Hit&
 /// After a collision deep inside an isotropic medium: one large step to the surface of the largest
 /// ball that fits into the body. False where none does.
 template <class Shape>
-bool large_step(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng) {
+bool large_step(Shape&& shape, const Medium& medium, Particle& particle, Rng& rng,
+                double margin = 0) {
   if (medium.g != 0) return false;
-  const int level = ball_level(shape.clearance(particle.p) * medium.sigma_s);
+  const int level = ball_level(shape.clearance(particle.p) * medium.sigma_s - margin);
   if (level < 0) return false;
   const BallCrossing crossing = cross_ball(level, rng);
   particle.p = particle.p + (ball_radius(level) / medium.sigma_s) * crossing.outward;

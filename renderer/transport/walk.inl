@@ -68,8 +68,19 @@ template <class Body>
 bool Tracer<Body>::walk_alone(Path& path, Hit& hit) {
   Rng& rng = path.sampler.rng();
   if (over_) return false;
+  path.vertex = {};
   if constexpr (Body::inside.scatters) {
-    return walk_to_boundary(shape_, interior_.medium, path, rng, hit);
+    auto&& around = surroundings(shape_, interior_.medium);
+    if (path.colliding) collide_alone(around, path);
+    path.colliding = false;
+    ++tile_.counters.flights;
+    while (fly(around, interior_.medium, path, rng, hit)) {
+      ++tile_.counters.flights;
+      if (strayed(shape_, path) || out_of_time(256)) return false;
+      collide_alone(around, path);
+    }
+    if (path.vertex.connected()) path.vertex.flight = hit.t;
+    return true;
   } else if constexpr (Body::inside.half_space) {
     // In the half space below the point where it entered, to leave at that very point.
     const Frame frame(path.n);
@@ -97,6 +108,27 @@ bool Tracer<Body>::walk_to_boundary(const Place& place, const Medium& medium, Pa
     scatter(around, medium, particle, rng);
   }
   return true;
+}
+
+template <class Body>
+template <class Place>
+void Tracer<Body>::collide_alone(Place&& around, Path& path) {
+  const Medium& medium = interior_.medium;
+  Rng& rng = path.sampler.rng();
+  path.vertex = {};
+  if constexpr (Body::connects_by_facets) {
+    if (large_step(around, medium, path, rng, connector_.margin())) return;
+    if (!connector_.active()) {
+      path.d = medium.scatter(path.d, rng);
+      return;
+    }
+    connector_.connect(path, rng);
+    const Vec3 before = path.d;
+    path.d = medium.scatter(path.d, rng);
+    path.vertex = {.p = path.p, .phase = medium.phase(dot(before, path.d)), .d = path.d};
+  } else {
+    scatter(around, medium, path, rng);
+  }
 }
 
 template <class Body>
@@ -161,10 +193,7 @@ void Tracer<Body>::start_walks(const Path& scattered, double weight, PathSampler
 
 template <class Body>
 void Tracer<Body>::collide(Path& path) {
-  if constexpr (Body::walks_together)
-    path.colliding = true;
-  else
-    scatter(shape_, interior_.medium, path, path.sampler.rng());
+  path.colliding = true;
 }
 
 template <class Body>
