@@ -5,27 +5,12 @@
 namespace translucube {
 namespace {
 
-/// Collisions per depth of a ray along d.
-double collision_rate(const Ggx& ggx, Vec3 d) {
-  return ggx.projected_area(-d) / std::fmax(std::fabs(d.z), 1e-12);
-}
-
-/// The depth of the same point seen from the other side.
-double depth_beyond(double depth) {
-  return depth < 0.7 ? -std::log(-std::expm1(-std::fmax(depth, 1e-300)))
-                     : -std::log1p(-std::exp(-depth));
-}
-
 Vec3 mirrored(Vec3 w) { return {w.x, w.y, -w.z}; }
 
 }  // namespace
 
 MicroVertex::MicroVertex(const Ggx& ggx, double eta, Vec3 wo, double u)
     : ggx_(ggx), eta_(eta), w_(wo), depth_(-std::log(u) / collision_rate(ggx, -wo)) {}
-
-double MicroVertex::escape(Vec3 d, double depth) const {
-  return d.z > 0 ? std::exp(-collision_rate(ggx_, d) * depth) : 0;
-}
 
 MicroSample MicroVertex::sample(Sample2 u) const {
   MicroSample s;
@@ -37,9 +22,9 @@ MicroSample MicroVertex::sample(Sample2 u) const {
   }
   const double f = fresnel(w_m, eta_);
   const Vec3 up = reflect(w_, m);
-  s.reflected = {up, f, escape(up, depth_)};
+  s.reflected = {up, f, escape_from(ggx_, up, depth_)};
   if (const auto down = refract(w_, m, eta_))
-    s.transmitted = {*down, 1 - f, escape(mirrored(*down), depth_beyond(depth_))};
+    s.transmitted = {*down, 1 - f, escape_from(ggx_, mirrored(*down), depth_beyond(depth_))};
   return s;
 }
 

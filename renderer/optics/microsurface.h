@@ -14,11 +14,43 @@
 //
 // Directions are local: z is the macroscopic normal on the side that the walk began on.
 
+#include <cmath>
+
 #include "renderer/base/sampler.h"
 #include "renderer/optics/interface.h"
 #include "renderer/optics/microfacet.h"
 
 namespace translucube {
+
+/// Collisions per depth of a ray along d.
+inline double collision_rate(const Ggx& ggx, Vec3 d) {
+  return ggx.projected_area(-d) / std::fmax(std::fabs(d.z), 1e-12);
+}
+
+/// The depth of the same point seen from the other side.
+inline double depth_beyond(double depth) {
+  return depth < 0.7 ? -std::log(-std::expm1(-std::fmax(depth, 1e-300)))
+                     : -std::log1p(-std::exp(-depth));
+}
+
+/// The chance of a ray along d from this depth to meet no further microfacet.
+inline double escape_from(const Ggx& ggx, Vec3 d, double depth) {
+  return d.z > 0 ? std::exp(-collision_rate(ggx, d) * depth) : 0;
+}
+
+/// The normal, on w's side, of the facet by which light goes from wi to w; `eta`: index on wi's
+/// side over index on w's.
+inline Vec3 facet_between(Vec3 w, Vec3 wi, double eta) {
+  const Vec3 h = w + eta * wi;
+  return std::copysign(1, h.z) * normalize(h);
+}
+
+/// |d m / d wi| of refraction, wi_m < 0 (Walter et al. 2007, eq. 17); kept off infinity where the
+/// indices are the same and nothing is refracted.
+inline double refraction_jacobian(double eta, double w_m, double wi_m) {
+  const double q = w_m + eta * wi_m;
+  return eta * eta * -wi_m / std::fmax(q * q, 1e-20);
+}
 
 /// One ray after a collision, before it is known whether it escapes.
 struct MicroBranch {
@@ -48,7 +80,6 @@ class MicroVertex {
   void advance(const MicroSample& sample, double u, double v);
 
  private:
-  double escape(Vec3 d, double depth) const;
   void collide(Vec3 d, double depth, double u);
 
   Ggx ggx_;

@@ -14,7 +14,7 @@ void Tracer<Body>::escape(const Path& path) {
   }
   if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
     return collector_.collect(path, uniform->radiance, path.weight);
-  if constexpr (Body::connects && Body::smooth)
+  if constexpr (Body::walks_together && Body::smooth)
     if (path.pdf == Path::found_by_connecting)
       return collector_.collect_carried(
           path.pixel, path.length, path.tint,
@@ -24,7 +24,7 @@ void Tracer<Body>::escape(const Path& path) {
   const std::size_t i = batch.size++;
   batch.direction.set(i, path.d);
   escapes.from[i] = {path.n, path.length, path.weight, path.pdf, path.start, path.pixel, path.tint};
-  if constexpr (Body::connects_by_facets) escapes.from[i].flight = {path.vertex, path.vertex.d};
+  if constexpr (facetted) escapes.from[i].flight = {path.vertex, path.vertex.d};
   if (batch.size == EnvironmentBatch::capacity) meet_environment(escapes);
 }
 
@@ -37,14 +37,14 @@ void Tracer<Body>::meet_environment(Escapes& escapes) {
     const Escape& from = escapes.from[i];
     const EnvironmentValue& light = batch.value[i];
     Rgb radiance = light.radiance;
-    if constexpr (Body::connects_by_facets) {
+    if constexpr (facetted) {
       const Path::Vertex& vertex = from.flight.from;
       if (vertex.connected())
         radiance = radiance * static_cast<float>(
                                   connector_.share_of_walk(vertex, from.flight.d, from.n, light));
     } else if (from.pdf != Path::not_looked_for) {
       const auto share = static_cast<float>(from.pdf / (from.pdf + light.pdf));
-      if constexpr (Body::connects && Body::smooth) {
+      if constexpr (Body::walks_together && Body::smooth) {
         const Rgb expected = connector_.expected(from.n, from.start) * Connector::far_share;
         radiance = expected + (radiance - expected) * share;
       } else {

@@ -34,7 +34,7 @@ void Tracer<Body>::leave_smooth(Path& path) {
   if (reflectance < 1) {
     const Vec3 out = *refract(-path.d, -path.n, 1 / interface_.ior);
     double pdf = Path::not_looked_for;
-    if constexpr (Body::smooth && !Body::connects_by_facets) pdf = connector_.pdf(path);
+    if constexpr (Body::smooth && !facetted) pdf = connector_.pdf(path);
     go_out(path, out, path.weight * (1 - reflectance), pdf);
   }
   path.weight *= reflectance;

@@ -28,9 +28,9 @@
 //                     body, dipole, print): one light for each path         escape.inl
 //   microfacet light  at each collision with a microfacet, on either side   cross.inl
 //                     of the interface: eight lights of the tile's list
-//   connections       from scatterers through the boundary: of a sphere,    walk.inl,
-//                     smooth or rough; of flat faces, smooth                sphere/*_connector.h,
-//                                                                           facets/
+//   connections       from scatterers through the boundary, smooth or       walk.inl,
+//                     rough                                                 sphere/*_connector.h,
+//                                                                           boundary/
 //
 // What runs inside, by interior and shape:
 //
@@ -41,8 +41,8 @@
 //   Lambertian     return_diffuse()                     the same
 //   dense pigment  walk_alone() in a half space         the same
 //   scattering     walk_together(), in SIMD;            walk_alone(), in a mesh with a Clearing;
-//                  vertices connect to lights by        vertices connect through smooth flat
-//                  SmoothConnector or RoughConnector    faces by FacetConnector
+//                  vertices connect to lights by        vertices connect by FacetConnector (but in
+//                  SmoothConnector or RoughConnector    a bowl) or MicrofacetConnector
 
 #include <algorithm>
 #include <cmath>
@@ -55,8 +55,9 @@
 #include "renderer/light/environment_batch.h"
 #include "renderer/optics/lambertian.h"
 #include "renderer/optics/microsurface_batch.h"
+#include "renderer/transport/boundary/facet_connector.h"
+#include "renderer/transport/boundary/microfacet_connector.h"
 #include "renderer/transport/collector.h"
-#include "renderer/transport/facets/facet_connector.h"
 #include "renderer/transport/incident_point.h"
 #include "renderer/transport/path.h"
 #include "renderer/transport/sphere/rough_connector.h"
@@ -89,21 +90,23 @@ struct Body {
   static constexpr bool walks_together = inside.scatters && std::is_same_v<Shape, Sphere>;
   /// Trapped light rolls from reflection to reflection in one step.
   static constexpr bool rolls = inside.scatters && std::is_same_v<Shape, Sphere>;
-  /// Scattering vertices connect to lights through the boundary: those that walks together report.
-  static constexpr bool connects = walks_together;
-  /// Scattering vertices of walks that go alone connect through flat faces.
-  static constexpr bool connects_by_facets =
-      inside.scatters && smooth && (std::is_same_v<Shape, Mesh> || std::is_same_v<Shape, Polytope>);
-  using Connector = std::conditional_t<
-      connects_by_facets, FacetConnector<Shape>,
+  /// Scattering vertices connect to lights through the boundary.
+  static constexpr bool flat = std::is_same_v<Shape, Mesh> || std::is_same_v<Shape, Polytope>;
+  static constexpr bool connects = inside.scatters && (walks_together || flat || !smooth);
+  static constexpr bool connects_alone = connects && !walks_together;
+  using SphereConnector = std::conditional_t<smooth, SmoothConnector, RoughConnector>;
+  using BoundaryConnector =
+      std::conditional_t<smooth, FacetConnector<Shape>, MicrofacetConnector<Shape>>;
+  using Connector =
       std::conditional_t<!connects, NoConnector,
-                         std::conditional_t<smooth, SmoothConnector, RoughConnector>>>;
+                         std::conditional_t<walks_together, SphereConnector, BoundaryConnector>>;
 };
 
 template <class Body>
 class Tracer {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   using Connector = typename Body::Connector;
+  static constexpr bool facetted = Body::connects_alone && Body::smooth;
 
  public:
   Tracer(const Scene& scene, const Body& body, Tile& tile, std::uint64_t key,
@@ -131,7 +134,7 @@ class Tracer {
       walk();
       leave();
     }
-    if constexpr (!Body::connects_by_facets) connector_.flush();
+    connector_.flush();
     for (Escapes& escapes : escapes_) meet_environment(escapes);
     collector_.flush();
   }
@@ -144,12 +147,15 @@ class Tracer {
   Connector make_connector(const Scene& scene, std::uint64_t key) {
     // Vertices connect through one interface: where there are two, the walk finds the light.
     static const LightList none;
-    if constexpr (Body::connects_by_facets)
-      return Connector(scene, shape_, collector_, key);
-    else if constexpr (Body::connects && !Body::smooth)
-      return Connector(scene, collector_, scene.oiled ? none : lights_);
-    else
+    const LightList& lights = scene.oiled ? none : lights_;
+    if constexpr (!Body::connects || (Body::walks_together && Body::smooth))
       return Connector(scene, collector_, key);
+    else if constexpr (Body::walks_together)
+      return Connector(scene, collector_, lights);
+    else if constexpr (Body::smooth)
+      return Connector(scene, shape_, collector_, key);
+    else
+      return Connector(scene, shape_, collector_, lights);
   }
 
   // ---- emit.inl
@@ -236,7 +242,7 @@ class Tracer {
       Path::Vertex from;
       Vec3 d;
     };
-    [[no_unique_address]] std::conditional_t<Body::connects_by_facets, Flight, Nothing> flight{};
+    [[no_unique_address]] std::conditional_t<facetted, Flight, Nothing> flight{};
   };
   struct Escapes {
     EnvironmentBatch batch;

@@ -116,7 +116,7 @@ void Tracer<Body>::collide_alone(Place&& around, Path& path) {
   const Medium& medium = interior_.medium;
   Rng& rng = path.sampler.rng();
   path.vertex = {};
-  if constexpr (Body::connects_by_facets) {
+  if constexpr (Body::connects_alone) {
     if (large_step(around, medium, path, rng, connector_.margin())) return;
     if (!connector_.active()) {
       path.d = medium.scatter(path.d, rng);

@@ -1,8 +1,10 @@
 #pragma once
 
-// In this room stands how scatterers in a body with flat faces find light through its boundary.
-// Within a face all light from one direction goes on in one direction inside (Snell), so that the
-// way out of a point through a face towards a light is known at once, and that a ray in that
+// In this room stands how scatterers in any body find light through its boundary, where a sphere
+// has ways of its own (../sphere). Nothing here knows of a path's stages.
+//
+// Within a flat face all light from one direction goes on in one direction inside (Snell), so that
+// the way out of a point through a face towards a light is known at once, and that a ray in that
 // direction meets the face says whether there is one (Walter, Zhao, Holzschuch, Bala 2009, of flat
 // triangles).
 
@@ -47,6 +49,14 @@ inline NearPlane plane_near(const Mesh& body, Vec3 p) {
   const Facet& facet = body.facet(body.face_near(p));
   return {facet.normal, std::fmax(0.0, dot(facet.a - p, facet.normal))};
 }
+
+/// A normal of the boundary near a point inside; any where that is not known.
+template <class Shape>
+Vec3 normal_near(const Shape&, Vec3) {
+  return {0, 0, 1};
+}
+inline Vec3 normal_near(const Polytope& body, Vec3 p) { return plane_near(body, p).n; }
+inline Vec3 normal_near(const Mesh& body, Vec3 p) { return plane_near(body, p).n; }
 
 /// Calls `use` with ways out of p, a point inside, towards `light`: all that there are. Which ones
 /// it finds depends on p and `light` alone.

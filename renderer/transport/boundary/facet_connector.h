@@ -6,8 +6,8 @@
 
 #include "renderer/light/environment.h"
 #include "renderer/scene/scene.h"
+#include "renderer/transport/boundary/ways_out.h"
 #include "renderer/transport/collector.h"
-#include "renderer/transport/facets/ways_out.h"
 
 namespace translucube {
 
@@ -42,6 +42,7 @@ class FacetConnector {
   /// Mean free paths below the surface where collisions are visited one by one.
   double margin() const { return active() ? 3 : 0; }
   void start(Path&) {}
+  void flush() {}
 
   /// From a collision at path.p where the light came along path.d; before its new direction.
   void connect(const Path& path, Rng& rng) {
