@@ -35,7 +35,7 @@ ImageEnvironment::ImageEnvironment(const Image& image, double rotation_rad, doub
 }
 
 bool ImageEnvironment::hides(int column) const {
-  if (side_ == EnvironmentSide::all || width_ < 4) return false;
+  if (side_ != EnvironmentSide::front || width_ < 4) return false;
   const auto is_behind = [&](int border) {
     return std::cos(2 * pi * (0.5 - double(border) / width_) + rotation_rad_) < 0;
   };
@@ -68,7 +68,7 @@ HugePageVector<double> ImageEnvironment::cell_weights(std::span<const Texel> tex
   hidden.reserve(width_);
   for (int x = 0; x < width_; ++x) hidden.push_back(hides(x));
   double total = 0;
-  for (int y = 0; y < height_; ++y) {
+  for (int y = 0; y < rows_seen(); ++y) {
     const double solid_angle = std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_);
     for (int x = 0; x < width_; ++x) {
       if (hidden[x]) continue;
@@ -109,7 +109,7 @@ void ImageEnvironment::build_irradiance() {
     sines.push_back(std::sin(azimuth));
     cosines.push_back(std::cos(azimuth));
   }
-  for (int y = 0; y < height_; ++y) {
+  for (int y = 0; y < rows_seen(); ++y) {
     const double theta = pi * (y + 0.5) / height_, sin_theta = std::sin(theta);
     const double solid_angle =
         2 * pi / width_ * (std::cos(pi * y / height_) - std::cos(pi * (y + 1) / height_));

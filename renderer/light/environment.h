@@ -33,8 +33,9 @@ struct UniformEnvironment {
   Rgb radiance{1, 1, 1};
 };
 
-/// Which part of a map is seen: a plane behind the body hides what lies towards -z.
-enum class EnvironmentSide { all, front };
+/// Which part of a map is seen: a plane behind the body hides what lies towards -z, one below it
+/// what lies towards -y.
+enum class EnvironmentSide { all, front, above };
 
 /// The place of a direction in a map.
 struct MapCoordinates {
@@ -78,11 +79,15 @@ class ImageEnvironment {
 
  private:
   EnvironmentValue seen(Vec3 direction, EnvironmentValue value) const {
-    if (side_ == EnvironmentSide::front && direction.z < 0) value.radiance = {};
+    if ((side_ == EnvironmentSide::front && direction.z < 0) ||
+        (side_ == EnvironmentSide::above && direction.y < 0))
+      value.radiance = {};
     return value;
   }
   /// Whether all of a column of cells is hidden.
   bool hides(int column) const;
+  /// All rows that are not hidden, from the top.
+  int rows_seen() const { return side_ == EnvironmentSide::above ? (height_ + 1) / 2 : height_; }
   struct Texel {
     float r, g, b, weight;  ///< weight: probability of the pixel cell x number of cells
   };

@@ -60,9 +60,10 @@ void EnvironmentBatch::look_up(const ImageEnvironment& environment) {
   for (std::size_t i = 0; i < size; ++i) environment.prefetch(u[i], v[i]);
   for (std::size_t i = 0; i < size; ++i)
     value[i] = environment.value_at({u[i], v[i], sin_theta[i]});
-  if (environment.side() == EnvironmentSide::front)
-    for (std::size_t i = 0; i < size; ++i)
-      if (direction.z[i] < 0) value[i].radiance = {};
+  if (environment.side() == EnvironmentSide::all) return;
+  const auto& height = environment.side() == EnvironmentSide::front ? direction.z : direction.y;
+  for (std::size_t i = 0; i < size; ++i)
+    if (height[i] < 0) value[i].radiance = {};
 }
 
 }  // namespace translucube

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "renderer/base/batch.h"
-#include "renderer/light/environment.h"
+#include "renderer/light/lighting.h"
 
 namespace translucube {
 
@@ -18,7 +18,7 @@ struct LightList {
 
   LightList() {}
   /// Empty where the environment is the same everywhere: there is nothing to look for.
-  LightList(const Environment& environment, std::uint64_t key);
+  LightList(const Lighting& lighting, std::uint64_t key);
 
   bool empty() const { return radiance.empty(); }
 

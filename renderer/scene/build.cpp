@@ -4,7 +4,7 @@
 
 #include "picture/image_io.h"
 #include "picture/light_map.h"
-#include "renderer/light/environment_cache.h"
+#include "renderer/scene/light.h"
 #include "renderer/scene/scene.h"
 #include "renderer/shape/file/mesh_file.h"
 #include "renderer/shape/mesh.h"
@@ -73,20 +73,6 @@ Backdrop make_backdrop(const BackdropSpec& spec, const PlacedShape& placed) {
           spec.period_mm / unit,
           static_cast<float>(spec.light),
           static_cast<float>(spec.dark)};
-}
-
-Environment make_environment(const EnvironmentSpec& spec, EnvironmentSide side,
-                             EnvironmentCache& cache) {
-  if (const auto* constant = std::get_if<ConstantEnvironmentSpec>(&spec.source))
-    return UniformEnvironment{constant->radiance * static_cast<float>(spec.scale)};
-  try {
-    return *cache.get(std::get<ImageEnvironmentSpec>(spec.source).file,
-                      std::fmod(spec.rotation_deg, 360) * std::numbers::pi / 180, spec.scale, side);
-  } catch (const ImageUnavailable& error) {
-    throw SceneError(SceneError::Part::environment, error.what(), true);
-  } catch (const ImageError& error) {
-    throw SceneError(SceneError::Part::environment, error.what());
-  }
 }
 
 Camera make_camera(const SceneSpec& spec, Vec3 position, Vec3 target) {
@@ -174,9 +160,8 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   traced.coefficients.sigma_a_peak = least_absorption(spec);
   scene->interior = make_interior(traced, unit);
   if (spec.backdrop) scene->backdrop = make_backdrop(*spec.backdrop, placed);
-  scene->environment = make_environment(
-      spec.environment, spec.backdrop ? EnvironmentSide::front : EnvironmentSide::all,
-      environments ? *environments : own);
+  scene->environment =
+      make_lighting(spec, placed.center_mm, unit, environments ? *environments : own);
   scene->camera =
       make_camera(spec, to_body(spec.camera.position_mm), to_body(spec.camera.target_mm));
   scene->camera_inside =

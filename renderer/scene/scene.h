@@ -12,7 +12,7 @@
 #include "renderer/film/absorption.h"
 #include "renderer/film/length_bins.h"
 #include "renderer/light/backdrop.h"
-#include "renderer/light/environment.h"
+#include "renderer/light/lighting.h"
 #include "renderer/optics/interface.h"
 #include "renderer/optics/interior.h"
 #include "renderer/scene/camera.h"
@@ -41,7 +41,7 @@ struct Scene {
   AnyInterface interface;
   std::optional<OiledPart> oiled;  ///< of a rough interface
   AnyInterior interior;
-  Environment environment;
+  Lighting environment;
   std::optional<Backdrop> backdrop;  ///< with it, the environment shows its front half only
   Camera camera;
   bool camera_inside = false;

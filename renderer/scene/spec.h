@@ -50,10 +50,42 @@ struct ImageEnvironmentSpec {
 struct ConstantEnvironmentSpec {
   Rgb radiance{1, 1, 1};
 };
+/// Real spherical harmonics (light/harmonics.h).
+struct HarmonicsSpec {
+  std::vector<Rgb> coefficients;  ///< 1, 4, 9 or 16
+};
 struct EnvironmentSpec {
-  std::variant<ConstantEnvironmentSpec, ImageEnvironmentSpec> source;
+  std::variant<ConstantEnvironmentSpec, ImageEnvironmentSpec, HarmonicsSpec> source;
   double rotation_deg = 0;  ///< about +y, positive from +z towards +x
   double scale = 1;         ///< multiplies the radiance, >= 0
+};
+
+struct SunSpec {
+  Vec3 direction{0, 1, 0};  ///< towards it, of any length but 0
+  double angular_diameter_deg = 0.53;
+  Rgb irradiance{1, 1, 1};  ///< on a surface that faces it
+  friend bool operator==(const SunSpec&, const SunSpec&) = default;
+};
+/// Flat lamps that shine evenly from their normal's side and hide nothing.
+struct DiscSpec {
+  Vec3 center_mm{0, 100, 0}, normal{0, -1, 0};
+  double radius_mm = 20;
+  Rgb radiance{1, 1, 1};
+  friend bool operator==(const DiscSpec&, const DiscSpec&) = default;
+};
+struct RectangleSpec {
+  Vec3 center_mm{0, 100, 0}, normal{0, -1, 0}, up{0, 0, 1};  ///< the height lies along up
+  double width_mm = 40, height_mm = 40;
+  Rgb radiance{1, 1, 1};
+  friend bool operator==(const RectangleSpec&, const RectangleSpec&) = default;
+};
+using LightSpec = std::variant<SunSpec, DiscSpec, RectangleSpec>;
+
+/// A wide diffuse plane below the body.
+struct GroundSpec {
+  double height_mm = -20;    ///< of y, at most that of the body's lowest point
+  double reflectance = 0.5;  ///< [0, 1]
+  friend bool operator==(const GroundSpec&, const GroundSpec&) = default;
 };
 
 struct CameraSpec {
@@ -83,7 +115,9 @@ struct SceneSpec {
   std::optional<Explorable> explorable;
   ObjectSpec object;
   EnvironmentSpec environment;
+  std::vector<LightSpec> lights;  ///< beside the environment
   std::optional<BackdropSpec> backdrop;
+  std::optional<GroundSpec> ground;  ///< not with a backdrop
   CameraSpec camera;
   int width = 512, height = 512;
   std::uint64_t seed = 1;
@@ -91,7 +125,7 @@ struct SceneSpec {
 
 /// A resource of the scene that cannot be used: unreadable image, open or empty mesh.
 struct SceneError : std::runtime_error {
-  enum class Part { object, environment, camera };
+  enum class Part { object, environment, lights, ground, camera };
   Part part;
   bool unavailable;  ///< another try may help: what failed is the reading, not what is read
   SceneError(Part p, const std::string& what, bool may_help = false)

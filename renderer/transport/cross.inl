@@ -31,8 +31,11 @@ void Tracer<Body>::cross_rough(bool from_outside) {
     const MicrosurfaceBatch::Lit& lit = microsurface_.lit();
     for (std::size_t i = 0; i < lit.size; ++i) {
       const Vec3 direction = lights_.direction[lit.light[i]];
-      if (hides(crossing_[lit.slot[i]].p, direction)) continue;
-      found[lit.slot[i]] += lights_.radiance[lit.light[i]] * lit.share[i];
+      const Vec3 p = crossing_[lit.slot[i]].p;
+      if (hides(p, direction)) continue;
+      found[lit.slot[i]] +=
+          (lights_.radiance[lit.light[i]] + scene_.environment.from_near(p, direction)) *
+          lit.share[i];
     }
     send_out(lights_each);
   }

@@ -56,16 +56,15 @@ void Tracer<Body>::return_dipole(Path& arriving) {
 template <class Body>
 void Tracer<Body>::add_direct_light(Path& path, const Frame& frame,
                                     const InterfacedLambertian& base) {
-  const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
-  // The same from everywhere: nothing to look for.
-  if (environment == nullptr) return;
-  const EnvironmentSample light = environment->sample(path.sampler.next2());
+  if (scene_.environment.uniform()) return;
+  const EnvironmentSample light = scene_.environment.sample(path.sampler.next2());
   ++tile_.counters.light_samples;
   const LobeValue value = base.emit(frame.to_local(light.direction));
   if (value.f_cos <= 0) return;
   if (hides(path.p, light.direction)) return;
   collector_.note("connect", path);
-  collector_.collect(path, light.value.radiance,
+  collector_.collect(path,
+                     light.value.radiance + scene_.environment.from_near(path.p, light.direction),
                      path.weight * value.f_cos / (light.value.pdf + value.pdf));
 }
 

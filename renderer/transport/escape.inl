@@ -8,11 +8,9 @@ void Tracer<Body>::escape(const Path& path) {
   if (scene_.backdrop && path.d.z < 0) {
     meet_backdrop(path);
     // Nothing of the environment, but a connection may have taken its share of nothing.
-    if (path.pdf == Path::not_looked_for ||
-        std::holds_alternative<UniformEnvironment>(scene_.environment))
-      return;
+    if (path.pdf == Path::not_looked_for || scene_.environment.uniform()) return;
   }
-  if (const auto* uniform = std::get_if<UniformEnvironment>(&scene_.environment))
+  if (const UniformEnvironment* uniform = scene_.environment.uniform())
     return collector_.collect(path, uniform->radiance, path.weight);
   if constexpr (Body::walks_together && Body::smooth)
     if (path.pdf == Path::found_by_connecting)
@@ -23,7 +21,9 @@ void Tracer<Body>::escape(const Path& path) {
   EnvironmentBatch& batch = escapes.batch;
   const std::size_t i = batch.size++;
   batch.direction.set(i, path.d);
-  escapes.from[i] = {path.n, path.length, path.weight, path.pdf, path.start, path.pixel, path.tint};
+  escapes.from[i] = {
+      path.n,     path.length, path.weight, path.pdf,
+      path.start, path.pixel,  path.tint,   scene_.environment.from_near(path.p, path.d)};
   if constexpr (facetted) escapes.from[i].flight = {path.vertex, path.vertex.d};
   if (batch.size == EnvironmentBatch::capacity) meet_environment(escapes);
 }
@@ -32,11 +32,11 @@ template <class Body>
 void Tracer<Body>::meet_environment(Escapes& escapes) {
   EnvironmentBatch& batch = escapes.batch;
   if (batch.size == 0) return;
-  batch.look_up(std::get<ImageEnvironment>(scene_.environment));
+  scene_.environment.look_up(batch);
   for (std::size_t i = 0; i < batch.size; ++i) {
     const Escape& from = escapes.from[i];
     const EnvironmentValue& light = batch.value[i];
-    Rgb radiance = light.radiance;
+    Rgb radiance = light.radiance + from.near;
     if constexpr (facetted) {
       const Path::Vertex& vertex = from.flight.from;
       if (vertex.connected())
@@ -78,22 +78,21 @@ void Tracer<Body>::reflect_from_print(Path path) {
   // Light that falls on the print straight from the environment is looked for; what comes by way of
   // the body is found by going there.
   collector_.note("print", path);
-  const auto* environment = std::get_if<ImageEnvironment>(&scene_.environment);
+  const UniformEnvironment* uniform = scene_.environment.uniform();
   Hit hit;
-  if (environment) {
-    const EnvironmentSample light = environment->sample(path.sampler.next2());
+  if (!uniform) {
+    const EnvironmentSample light = scene_.environment.sample(path.sampler.next2());
     ++tile_.counters.light_samples;
     const double cosine = light.direction.z;
     if (cosine > 0 && light.value.pdf > 0 &&
         !shape_.intersect_outside(path.p, light.direction, hit))
-      collector_.collect(path, light.value.radiance,
-                         path.weight * cosine / (std::numbers::pi * light.value.pdf));
+      collector_.collect(
+          path, light.value.radiance + scene_.environment.from_near(path.p, light.direction),
+          path.weight * cosine / (std::numbers::pi * light.value.pdf));
   }
   path.d = InterfacedLambertian::sample(path.sampler.next2());
   if (shape_.intersect_outside(path.p, path.d, hit)) return go_back(path);
-  if (!environment)
-    collector_.collect(path, std::get<UniformEnvironment>(scene_.environment).radiance,
-                       path.weight);
+  if (uniform) collector_.collect(path, uniform->radiance, path.weight);
 }
 
 }  // namespace translucube

@@ -52,7 +52,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "renderer/light/environment_batch.h"
+#include "renderer/light/lighting.h"
 #include "renderer/optics/lambertian.h"
 #include "renderer/optics/microsurface_batch.h"
 #include "renderer/transport/boundary/facet_connector.h"
@@ -237,6 +237,7 @@ class Tracer {
     Vec3 n;
     double length, weight, pdf;
     std::uint32_t start, pixel, tint;
+    Rgb near;  ///< of lamps near by
     struct Nothing {};
     struct Flight {
       Path::Vertex from;

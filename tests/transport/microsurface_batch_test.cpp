@@ -37,7 +37,7 @@ Measured light_of(double alpha, double eta, bool from_outside, Vec3 wo, std::uin
   auto batch = std::make_unique<MicrosurfaceBatch>();
   std::vector<double> means;
   for (int repeat = 0; repeat < 400; ++repeat) {
-    const LightList lights(environment, hash_combine(3, repeat));
+    const LightList lights(Lighting(environment), hash_combine(3, repeat));
     Rng rng(hash_combine(4, repeat));
     for (std::size_t i = 0; i < MicrosurfaceBatch::capacity; ++i)
       batch->push({0, 0, 1}, -wo, rng.uniform2(), rng.bits());
@@ -80,7 +80,7 @@ TEST(MicrosurfaceBatch, LightLookedForAndLightFoundAddUp) {
 
 TEST(MicrosurfaceBatch, SharesAreThoseOfASingleScatteringInClosedForm) {
   // At the first collision, averaged over its depth on both sides and over which lights it asks.
-  const LightList lights(mottled_light(), 5);
+  const LightList lights(Lighting(mottled_light()), 5);
   constexpr std::uint32_t lights_each = 8;
   for (const double alpha : {0.1, 0.5})
     for (const double eta : {1.5, 1 / 1.5})
@@ -117,7 +117,7 @@ TEST(MicrosurfaceBatch, SharesAreThoseOfASingleScatteringInClosedForm) {
 }
 
 TEST(MicrosurfaceBatch, InstructionSetsAgree) {
-  const LightList lights(mottled_light(), 7);
+  const LightList lights(Lighting(mottled_light()), 7);
   struct Outcome {
     std::vector<float> shares, weights, inward;
     bool operator==(const Outcome&) const = default;

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "renderer/light/environment.h"
+#include "renderer/light/lighting.h"
 #include "renderer/scene/scene.h"
 #include "renderer/transport/boundary/ways_out.h"
 #include "renderer/transport/collector.h"
@@ -22,23 +22,22 @@ class FacetConnector {
  public:
   FacetConnector(const Scene& scene, const Shape& shape, Collector& collector, std::uint64_t key)
       : shape_(shape),
+        lighting_(scene.environment),
         collector_(collector),
         medium_(std::get<ScatteringInterior>(scene.interior).medium),
         ior_(std::get<SmoothInterface>(scene.interface).ior) {
-    const auto* image = std::get_if<ImageEnvironment>(&scene.environment);
-    active_ = image != nullptr;
     if (!active()) return;
     Rng rng(key);
     std::vector<Sample2> numbers;
     for (std::uint32_t i = 0; i < drawn; ++i)
       numbers.push_back({(i + rng.uniform()) / drawn, rng.uniform()});
-    for (const EnvironmentSample& light : image->sample(numbers))
+    for (const EnvironmentSample& light : lighting_.sample(numbers))
       if (is_bright(light.value)) lights_.push_back(light);
     share_ = static_cast<double>(lights_.size()) / drawn;
   }
 
   /// Whether there is anything to look for: light that differs between directions.
-  bool active() const { return active_; }
+  bool active() const { return !lighting_.uniform(); }
   /// Mean free paths below the surface where collisions are visited one by one.
   double margin() const { return active() ? 3 : 0; }
   void start(Path&) {}
@@ -145,8 +144,10 @@ class FacetConnector {
   void collect(const Path& path, const EnvironmentSample& light, const WayOut& way, double weight) {
     const double out = (1 - fresnel(dot(light.direction, way.n), ior_)) *
                        density(way, light.direction, medium_.phase(dot(path.d, way.d)));
+    const Rgb radiance =
+        light.value.radiance + lighting_.from_near(path.p + way.distance * way.d, light.direction);
     collector_.collect(path.pixel, path.length + way.distance, path.tint,
-                       light.value.radiance * static_cast<float>(path.weight * weight * out));
+                       radiance * static_cast<float>(path.weight * weight * out));
   }
 
   static constexpr double least = 0.02;
@@ -165,12 +166,12 @@ class FacetConnector {
   }
 
   const Shape& shape_;
+  const Lighting& lighting_;
   Collector& collector_;
   Medium medium_;
   double ior_;
   std::vector<EnvironmentSample> lights_;
   double share_ = 0;  ///< of the lights drawn, those that are bright
-  bool active_ = false;
 };
 
 }  // namespace translucube

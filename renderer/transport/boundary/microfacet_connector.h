@@ -26,6 +26,7 @@ class MicrofacetConnector {
   MicrofacetConnector(const Scene& scene, const Shape& shape, Collector& collector,
                       const LightList& lights)
       : shape_(shape),
+        lighting_(scene.environment),
         collector_(collector),
         lights_(lights),
         medium_(std::get<ScatteringInterior>(scene.interior).medium),
@@ -70,8 +71,9 @@ class MicrofacetConnector {
     if (!(share > 0)) return;
     Hit other;
     if (!shape_.convex() && shape_.intersect_outside(hit.p, direction, other)) return;
+    const Rgb radiance = lights_.radiance[light] + lighting_.from_near(hit.p, direction);
     collector_.collect(path.pixel, path.length + hit.t, path.tint,
-                       lights_.radiance[light] * static_cast<float>(path.weight * share));
+                       radiance * static_cast<float>(path.weight * share));
   }
 
   /// A path straight from path.vertex to the boundary, where it leaves towards `light` with a
@@ -125,6 +127,7 @@ class MicrofacetConnector {
   }
 
   const Shape& shape_;
+  const Lighting& lighting_;
   Collector& collector_;
   const LightList& lights_;
   Medium medium_;

@@ -5,7 +5,8 @@
 namespace translucube {
 
 RoughConnector::RoughConnector(const Scene& scene, Collector& collector, const LightList& lights)
-    : collector_(collector),
+    : lighting_(scene.environment),
+      collector_(collector),
       lights_(lights),
       medium_(std::get<ScatteringInterior>(scene.interior).medium) {
   const auto& interface = std::get<RoughInterface>(scene.interface);
@@ -36,8 +37,10 @@ void RoughConnector::flush() {
   for (std::size_t i = 0; i < connections_.size; ++i) {
     if (connections_.share[i] == 0) continue;
     const Waiting& from = waiting_[i];
+    const Rgb radiance = lights_.radiance[from.light] +
+                         lighting_.from_near(connections_.normal[i], lights_.direction[from.light]);
     collector_.collect(from.pixel, from.length + connections_.distance[i], 0,
-                       lights_.radiance[from.light] * (from.weight * connections_.share[i]));
+                       radiance * (from.weight * connections_.share[i]));
   }
   connections_.size = 0;
 }

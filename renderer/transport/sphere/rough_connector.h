@@ -50,6 +50,7 @@ class RoughConnector {
     std::uint32_t pixel, light;
   };
 
+  const Lighting& lighting_;
   Collector& collector_;
   const LightList& lights_;
   Medium medium_;

@@ -61,7 +61,8 @@ void Connect(const RoughExitMedium& medium, RoughConnections& batch) {
 
     // Along it, and out by one collision.
     const Real distance = from.way_along(d);
-    const Basis inside(-normalize(from.at(distance, d)));
+    const Vector normal = normalize(from.at(distance, d));
+    const Basis inside(-normal);
     const Vector w = inside.to_local(-d), wi = inside.to_local(light);
     const Vector m = facet_between(w, wi, below.eta);
     const Real w_m = dot(w, m), wi_m = dot(wi, m);
@@ -78,6 +79,7 @@ void Connect(const RoughExitMedium& medium, RoughConnections& batch) {
     const Mask found = both(both(in_sight, towards_m > 0), both(possible, share > 0));
     store(or_zero(found, share), batch.share, i);
     store(distance, batch.distance, i);
+    store(normal, batch.normal, i);
   }
 }
 

@@ -23,6 +23,7 @@ struct RoughConnections : VertexBatch {
   /// Out: share of the vertex's light that leaves towards the light, over the light's density and
   /// weighted by the balance heuristic against the walk's own way there; the length inside.
   Floats share, distance;
+  Vectors normal;  ///< where it leaves
 };
 void connect_rough(const RoughExitMedium& medium, RoughConnections& connections);
 

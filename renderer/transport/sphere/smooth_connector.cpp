@@ -7,7 +7,7 @@ namespace translucube {
 
 SmoothConnector::SmoothConnector(const Scene& scene, Collector& collector, std::uint64_t key)
     : collector_(collector),
-      environment_(std::get_if<ImageEnvironment>(&scene.environment)),
+      lighting_(scene.environment),
       medium_(std::get<ScatteringInterior>(scene.interior).medium),
       ior_(std::get<SmoothInterface>(scene.interface).ior),
       rng_(key) {
@@ -20,7 +20,7 @@ SmoothConnector::SmoothConnector(const Scene& scene, Collector& collector, std::
   for (std::size_t i = 0; i < LightStrata::size; ++i)
     numbers.push_back(
         {(static_cast<double>(i) + rng_.uniform()) / LightStrata::size, rng_.uniform()});
-  lights_ = environment_->sample(numbers);
+  lights_ = lighting_.sample(numbers);
   for (std::size_t i = 0; i < LightStrata::size; ++i) strata_.set(i, lights_[i].direction);
 }
 
@@ -39,7 +39,7 @@ void SmoothConnector::start(Path& path) {
   const double rho = length(path.p);
   const Vec3 axis = rho > 0 ? path.p * (1 / rho) : Vec3{0, 0, 1};
   path.start = static_cast<std::uint32_t>(walks_.size());
-  walks_.push_back({axis, environment_->irradiance_by_order(axis)});
+  walks_.push_back({axis, lighting_.irradiance_by_order(axis)});
   for (Rgb& order : walks_.back().expected) order = order * std::numbers::inv_pi_v<float>;
 }
 
@@ -130,10 +130,19 @@ void SmoothConnector::collect_balanced(Queue& queue, ExitBranch branch) {
     const EnvironmentSample& light = lights_[from.light];
     const auto way = way_out(batch, i, light.direction, branch, Division::balanced);
     if (!way) continue;
-    const Rgb brought = light.value.radiance - expected(way->normal, from.walk) * far_share;
+    const Rgb radiance = light.value.radiance + lighting_.from_near(way->normal, light.direction);
+    const Rgb brought = radiance - expected(way->normal, from.walk) * far_share;
     collector_.collect(from.pixel, from.length + way->distance, 0,
                        brought * static_cast<float>(from.weight * way->share));
   }
+}
+
+Vec3 SmoothConnector::turned(const SmoothExitBatch& batch, std::size_t i, Vec3 p) {
+  const auto stratum = static_cast<double>(batch.chosen[i] / LightStrata::positions);
+  const double angle = 2 * std::numbers::pi * (batch.turn[i] + stratum / LightStrata::candidates);
+  const Vec3 axis = batch.axis[i];
+  return std::cos(angle) * p + std::sin(angle) * cross(axis, p) +
+         (1 - std::cos(angle)) * dot(axis, p) * axis;
 }
 
 void SmoothConnector::collect_near(Queue& queue) {
@@ -153,9 +162,12 @@ void SmoothConnector::collect_near(Queue& queue) {
                                carried * (-from.weight * batch.drawn_share[i]));
     const auto way = way_out(batch, i, batch.light[i], ExitBranch::near, Division::connected);
     if (!way) continue;
-    const EnvironmentValue& light = lights_[batch.chosen[i]].value;
+    const EnvironmentSample& light = lights_[batch.chosen[i]];
+    Rgb radiance = light.value.radiance;
+    if (lighting_.has_near())
+      radiance += lighting_.from_near(turned(batch, i, way->normal), light.direction);
     collector_.collect(from.pixel, from.length + way->distance, 0,
-                       light.radiance * static_cast<float>(from.weight * way->share / light.pdf));
+                       radiance * static_cast<float>(from.weight * way->share / light.value.pdf));
   }
 }
 

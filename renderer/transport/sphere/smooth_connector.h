@@ -41,7 +41,7 @@ class SmoothConnector {
   SmoothConnector(const Scene& scene, Collector& collector, std::uint64_t key);
 
   /// Whether there is anything to look for: light that differs between directions.
-  bool active() const { return environment_ != nullptr; }
+  bool active() const { return !lighting_.uniform(); }
   /// The body, and which of its collisions look for light.
   WalkMedium walk_medium() const { return {medium_, active(), margin, falling}; }
 
@@ -118,13 +118,15 @@ class SmoothConnector {
   /// What find_exits() found for a vertex, in double precision where single did not.
   std::optional<WayOut> way_out(const SmoothExitBatch& batch, std::size_t i, Vec3 towards,
                                 ExitBranch branch, Division division) const;
+  /// Where a point lies when the walk is turned so that the light chosen for vertex i is in place.
+  static Vec3 turned(const SmoothExitBatch& batch, std::size_t i, Vec3 p);
   void flush_near();
   void flush_far();
   void collect_balanced(Queue& queue, ExitBranch branch);
   void collect_near(Queue& queue);
 
   Collector& collector_;
-  const ImageEnvironment* environment_;
+  const Lighting& lighting_;
   Medium medium_;
   double ior_;
   Rng rng_;
