@@ -1,7 +1,7 @@
 #pragma once
 
-// A patterned plane behind the body: infinite, facing +z, and black to whoever looks from behind.
-// It hides all of the environment that lies towards -z.
+// A plane behind the body, patterned, or below it, the ground: infinite, facing +z or +y, and black
+// to whoever looks from behind. It hides all of the environment that lies beyond.
 
 #include <cmath>
 
@@ -38,15 +38,23 @@ inline constexpr double contact_gap = 1e-6;
 struct Backdrop {
   BackdropKind kind = BackdropKind::light_table;
   Pattern pattern = Pattern::plain;
-  double z = 0;
+  double height = 0;                  ///< of its points along the normal
   double center_x = 0, center_y = 0;  ///< of the pattern
   double period = 1;
   float light = 1, dark = 0;  ///< radiance of a light table, reflectance of a print
+  bool lies = false;          ///< it is the ground: its normal is +y, and its pattern plain
 
-  /// Where a ray towards -z meets it.
+  Vec3 normal() const { return lies ? Vec3{0, 1, 0} : Vec3{0, 0, 1}; }
+  /// Whether a ray along d comes to it.
+  bool faces(Vec3 d) const { return (lies ? d.y : d.z) < 0; }
+  /// Where such a ray meets it.
   Vec3 meet(Vec3 p, Vec3 d) const {
-    const double t = (z - p.z) / d.z;
-    return {p.x + t * d.x, p.y + t * d.y, z};
+    if (lies) {
+      const double t = (height - p.y) / d.y;
+      return {p.x + t * d.x, height, p.z + t * d.z};
+    }
+    const double t = (height - p.z) / d.z;
+    return {p.x + t * d.x, p.y + t * d.y, height};
   }
 
   /// The pattern at a point of the plane.

@@ -16,18 +16,22 @@ struct PlacedShape {
   AnyShape shape;
   Vec3 center_mm;
   double unit_mm;
-  double back;  ///< least z, in units
+  double back;    ///< least z, in units
+  double bottom;  ///< least y
 };
 
-PlacedShape make_shape(const SphereObject& sphere) { return {Sphere{}, {}, sphere.radius_mm, -1}; }
+PlacedShape make_shape(const SphereObject& sphere) {
+  return {Sphere{}, {}, sphere.radius_mm, -1, -1};
+}
 
 PlacedShape make_shape(const MeshObject& object) {
   try {
     const TriangleMesh mesh = read_mesh(object.file);
     const BuiltMesh built = build_mesh(mesh);
-    const double back =
-        std::ranges::min(mesh.vertices, {}, [](Vec3 v) { return v.z; }).z - built.center.z;
-    return {built.mesh, built.center, built.radius, back / built.radius};
+    const auto least = [&](double Vec3::*axis) {
+      return (std::ranges::min(mesh.vertices, {}, axis).*axis - built.center.*axis) / built.radius;
+    };
+    return {built.mesh, built.center, built.radius, least(&Vec3::z), least(&Vec3::y)};
   } catch (const MeshUnavailable& error) {
     throw SceneError(SceneError::Part::object, error.what(), true);
   } catch (const MeshError& error) {
@@ -39,7 +43,11 @@ PlacedShape make_shape(const MeshObject& object) {
 template <class Make>
 PlacedShape make_flat_faced(Vec3 extents_mm, Make&& make) {
   const double unit = 0.5 * length(extents_mm);
-  return {make(extents_mm * (0.5 / unit), unit), {}, unit, -0.5 * extents_mm.z / unit};
+  return {make(extents_mm * (0.5 / unit), unit),
+          {},
+          unit,
+          -0.5 * extents_mm.z / unit,
+          -0.5 * extents_mm.y / unit};
 }
 
 PlacedShape make_shape(const PlateObject& plate) {
@@ -60,7 +68,7 @@ PlacedShape make_shape(const WedgeObject& wedge) {
 
 PlacedShape make_shape(const BowlObject& bowl) {
   const double inner = 1 - bowl.thickness_mm / bowl.radius_mm;
-  return {Bowl(inner), {0, 0.5 * bowl.radius_mm, 0}, bowl.radius_mm, -1};
+  return {Bowl(inner), {0, 0.5 * bowl.radius_mm, 0}, bowl.radius_mm, -1, -1};
 }
 
 Backdrop make_backdrop(const BackdropSpec& spec, const PlacedShape& placed) {
@@ -73,6 +81,34 @@ Backdrop make_backdrop(const BackdropSpec& spec, const PlacedShape& placed) {
           spec.period_mm / unit,
           static_cast<float>(spec.light),
           static_cast<float>(spec.dark)};
+}
+
+Backdrop make_ground(const GroundSpec& spec, const PlacedShape& placed) {
+  Backdrop ground;
+  ground.kind = BackdropKind::print;
+  ground.lies = true;
+  ground.light = static_cast<float>(spec.reflectance);
+  ground.height = (spec.height_mm - placed.center_mm.y) / placed.unit_mm;
+  constexpr double rounding = 1e-6;  // of a body that is to stand on it
+  if (!(ground.height <= placed.bottom + rounding))
+    throw SceneError(SceneError::Part::ground, "the body reaches below the ground");
+  ground.height = std::fmin(ground.height, placed.bottom - contact_gap);
+  return ground;
+}
+
+/// Lamps and the camera are where the plane is seen from.
+void check_plane(const SceneSpec& spec, const Scene& scene, const Vec3& center_mm) {
+  if (!scene.backdrop) return;
+  const char* name = spec.ground ? "ground" : "backdrop";
+  const Vec3 n = scene.backdrop->normal();
+  if (!(dot(scene.camera.position, n) > scene.backdrop->height))
+    throw SceneError(
+        SceneError::Part::camera,
+        std::string("the camera is ") + (spec.ground ? "below the " : "behind the ") + name);
+  const double height_mm = scene.backdrop->height * scene.unit_mm + dot(center_mm, n);
+  for (const LightSpec& light : spec.lights)
+    if (lowest_mm(light, n) < height_mm)
+      throw SceneError(SceneError::Part::lights, std::string("a light reaches beyond the ") + name);
 }
 
 Camera make_camera(const SceneSpec& spec, Vec3 position, Vec3 target) {
@@ -160,14 +196,14 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   traced.coefficients.sigma_a_peak = least_absorption(spec);
   scene->interior = make_interior(traced, unit);
   if (spec.backdrop) scene->backdrop = make_backdrop(*spec.backdrop, placed);
+  if (spec.ground) scene->backdrop = make_ground(*spec.ground, placed);
   scene->environment =
       make_lighting(spec, placed.center_mm, unit, environments ? *environments : own);
   scene->camera =
       make_camera(spec, to_body(spec.camera.position_mm), to_body(spec.camera.target_mm));
   scene->camera_inside =
       std::visit([&](const auto& s) { return s.inside(scene->camera.position); }, scene->shape);
-  if (scene->backdrop && scene->camera.position.z <= scene->backdrop->z)
-    throw SceneError(SceneError::Part::camera, "the camera is behind the backdrop");
+  check_plane(spec, *scene, placed.center_mm);
   if (const auto* model = std::get_if<DipoleModel>(&spec.model)) use_dipole(*model, spec, *scene);
   if (scene->camera_inside && !is_open(scene->interior))
     throw SceneError(SceneError::Part::camera, "the camera is inside an opaque body");

@@ -1,6 +1,7 @@
 #include "renderer/scene/light.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "picture/image_io.h"
@@ -88,6 +89,21 @@ Lighting make_lighting(const SceneSpec& spec, Vec3 center_mm, double unit_mm,
   const EnvironmentSide side = side_of(spec);
   return Lighting(make_environment(spec.environment, side, cache), std::move(lamps.suns),
                   std::move(lamps.areas), side);
+}
+
+double lowest_mm(const LightSpec& light, Vec3 n) {
+  if (const auto* disc = std::get_if<DiscSpec>(&light)) {
+    const double cosine = dot(direction_of(disc->normal), n);
+    return dot(disc->center_mm, n) -
+           disc->radius_mm * std::sqrt(std::fmax(0.0, 1 - cosine * cosine));
+  }
+  if (const auto* rectangle = std::get_if<RectangleSpec>(&light)) {
+    const Vec3 normal = direction_of(rectangle->normal);
+    const Vec3 x = normalize(cross(direction_of(rectangle->up), normal)), y = cross(normal, x);
+    return dot(rectangle->center_mm, n) - 0.5 * rectangle->width_mm * std::fabs(dot(x, n)) -
+           0.5 * rectangle->height_mm * std::fabs(dot(y, n));
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace translucube

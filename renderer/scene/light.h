@@ -10,4 +10,7 @@ namespace translucube {
 Lighting make_lighting(const SceneSpec& spec, Vec3 center_mm, double unit_mm,
                        EnvironmentCache& cache);
 
+/// The least height along n (unit) [mm] of a lamp near by; of a sun, infinity.
+double lowest_mm(const LightSpec& light, Vec3 n);
+
 }  // namespace translucube

@@ -5,10 +5,12 @@ namespace translucube {
 template <class Body>
 void Tracer<Body>::escape(const Path& path) {
   collector_.note("escape", path);
-  if (scene_.backdrop && path.d.z < 0) {
+  if (scene_.backdrop && scene_.backdrop->faces(path.d)) {
     meet_backdrop(path);
     // Nothing of the environment, but a connection may have taken its share of nothing.
-    if (path.pdf == Path::not_looked_for || scene_.environment.uniform()) return;
+    if ((path.pdf == Path::not_looked_for && !scene_.environment.has_near()) ||
+        scene_.environment.uniform())
+      return;
   }
   if (const UniformEnvironment* uniform = scene_.environment.uniform())
     return collector_.collect(path, uniform->radiance, path.weight);
@@ -66,7 +68,7 @@ void Tracer<Body>::meet_backdrop(const Path& path) {
     return collector_.collect(path, {value, value, value}, path.weight);
   Path reflected = path;
   reflected.p = p;
-  reflected.n = {0, 0, 1};
+  reflected.n = backdrop.normal();
   reflected.weight *= value;
   reflected.pdf = Path::not_looked_for;
   reflected.vertex = {};
@@ -83,14 +85,14 @@ void Tracer<Body>::reflect_from_print(Path path) {
   if (!uniform) {
     const EnvironmentSample light = scene_.environment.sample(path.sampler.next2());
     ++tile_.counters.light_samples;
-    const double cosine = light.direction.z;
+    const double cosine = dot(light.direction, path.n);
     if (cosine > 0 && light.value.pdf > 0 &&
         !shape_.intersect_outside(path.p, light.direction, hit))
       collector_.collect(
           path, light.value.radiance + scene_.environment.from_near(path.p, light.direction),
           path.weight * cosine / (std::numbers::pi * light.value.pdf));
   }
-  path.d = InterfacedLambertian::sample(path.sampler.next2());
+  path.d = Frame(path.n).to_world(InterfacedLambertian::sample(path.sampler.next2()));
   if (shape_.intersect_outside(path.p, path.d, hit)) return go_back(path);
   if (uniform) collector_.collect(path, uniform->radiance, path.weight);
 }

@@ -44,7 +44,7 @@ std::vector<LongWork> long_works() {
   works[6].scene.backdrop = Backdrop{};
   works[6].scene.backdrop->kind = BackdropKind::print;
   works[6].scene.backdrop->light = 1;
-  works[6].scene.backdrop->z = -0.5 - contact_gap;
+  works[6].scene.backdrop->height = -0.5 - contact_gap;
   for (LongWork& work : works) look_from_afar(work.scene, 0.9, 256);
   return works;
 }

@@ -98,7 +98,7 @@ inline Scene half_lit_sphere() {
 inline void light_by_a_table(Scene& scene) {
   scene.environment = UniformEnvironment{{0, 0, 0}};
   scene.backdrop = Backdrop{};
-  scene.backdrop->z = -2;
+  scene.backdrop->height = -2;
 }
 
 /// Many passes of few samples, so that the spread between them tells the error.

@@ -26,7 +26,7 @@ Backdrop plain(BackdropKind kind, float value, double back, double distance) {
   Backdrop backdrop;
   backdrop.kind = kind;
   backdrop.light = value;
-  backdrop.z = back - std::fmax(contact_gap, distance);
+  backdrop.height = back - std::fmax(contact_gap, distance);
   return backdrop;
 }
 

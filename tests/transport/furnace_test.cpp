@@ -68,7 +68,7 @@ Backdrop white_backdrop(BackdropKind kind, const Body& body, double distance) {
   Backdrop backdrop;
   backdrop.kind = kind;
   backdrop.light = 1;
-  backdrop.z = body.back - std::fmax(contact_gap, distance);
+  backdrop.height = body.back - std::fmax(contact_gap, distance);
   return backdrop;
 }
 
