@@ -73,7 +73,7 @@ class Generator {
     if (rng_.bits() % 3 == 0) object[key] = number(usual);
   }
   json object() {
-    switch (rng_.bits() % 5) {
+    switch (rng_.bits() % 10) {
       case 0:
         return {{"type", "sphere"}, {"radius_mm", number(20)}};
       case 1:
@@ -92,6 +92,25 @@ class Generator {
                 {"height_mm", number(40)},
                 {"thin_mm", number(0)},
                 {"thick_mm", number(10)}};
+      case 4:
+        return {{"type", "torus"}, {"major_mm", number(14)}, {"minor_mm", number(6)}};
+      case 5:
+        return {{"type", "rounded-box"},
+                {"width_mm", number(28)},
+                {"height_mm", number(28)},
+                {"depth_mm", number(28)},
+                {"edge_mm", number(4)}};
+      case 6:
+        return {{"type", "relief"},      {"width_mm", number(40)},   {"height_mm", number(40)},
+                {"depth_mm", number(8)}, {"sharpness", number(0.5)}, {"ridges", rng_.bits() % 70}};
+      case 7:
+        return {{"type", "blob"},
+                {"radius_mm", number(20)},
+                {"bump", number(0.3)},
+                {"scale", number(1)},
+                {"seed", rng_.bits() % 100}};
+      case 8:
+        return {{"type", "dragon"}, {"length_mm", number(44)}};
       default:
         return {{"type", "bowl"}, {"radius_mm", number(20)}, {"thickness_mm", number(3)}};
     }

@@ -1,0 +1,113 @@
+#include "renderer/scene/placed_shape.h"
+
+#include <algorithm>
+
+#include "renderer/shape/body/body.h"
+#include "renderer/shape/file/mesh_file.h"
+#include "renderer/shape/mesh.h"
+
+namespace translucube {
+namespace {
+
+constexpr std::uint64_t most_body_triangles = 1'000'000;
+
+PlacedShape make_shape(const SphereObject& sphere) {
+  return {Sphere{}, {}, sphere.radius_mm, -1, {}};
+}
+
+PlacedShape place(const TriangleMesh& mesh, const std::optional<Refinement>& refinement) {
+  const BuiltMesh built = build_mesh(mesh);
+  const double back =
+      std::ranges::min(mesh.vertices, {}, [](Vec3 v) { return v.z; }).z - built.center.z;
+  return {built.mesh, built.center, built.radius, back / built.radius, refinement};
+}
+
+/// Does what reads a mesh, and tells of it as of the scene's object.
+template <class Read>
+auto reading_mesh(Read&& read) {
+  try {
+    return read();
+  } catch (const MeshUnavailable& error) {
+    throw SceneError(SceneError::Part::object, error.what(), true);
+  } catch (const MeshError& error) {
+    throw SceneError(SceneError::Part::object, error.what());
+  }
+}
+
+PlacedShape make_shape(const MeshObject& object) {
+  return reading_mesh([&] {
+    TriangleMesh mesh = read_mesh(object.file);
+    const auto refinement = make_smooth(mesh, object.smooth);
+    return place(mesh, refinement);
+  });
+}
+
+/// A body within a box of these extents, made in units of the box's bounding sphere.
+template <class Make>
+PlacedShape make_flat_faced(Vec3 extents_mm, Make&& make) {
+  const double unit = 0.5 * length(extents_mm);
+  return {make(extents_mm * (0.5 / unit), unit), {}, unit, -0.5 * extents_mm.z / unit, {}};
+}
+
+PlacedShape make_shape(const PlateObject& plate) {
+  return make_flat_faced({plate.width_mm, plate.height_mm, plate.thickness_mm},
+                         [](Vec3 half, double) { return make_box(half); });
+}
+
+PlacedShape make_shape(const BoxObject& box) {
+  return make_flat_faced({box.width_mm, box.height_mm, box.depth_mm},
+                         [](Vec3 half, double) { return make_box(half); });
+}
+
+PlacedShape make_shape(const WedgeObject& wedge) {
+  return make_flat_faced(
+      {wedge.width_mm, wedge.height_mm, wedge.thick_mm},
+      [&](Vec3 half, double unit) { return make_wedge(half, wedge.thin_mm / unit); });
+}
+
+PlacedShape make_shape(const BowlObject& bowl) {
+  const double inner = 1 - bowl.thickness_mm / bowl.radius_mm;
+  return {Bowl(inner), {0, 0.5 * bowl.radius_mm, 0}, bowl.radius_mm, -1, {}};
+}
+
+PlacedShape place(BodyMesh body) {
+  // Of what is thin in a large body, a hundredth of a percent; else as wished of any mesh.
+  constexpr double of_thinnest = 2e-4;
+  const double error = of_thinnest * body.thinnest / bounding_radius(body.mesh);
+  refine(body.mesh, std::min(body.chord_error, error), most_body_triangles);
+  return place(body.mesh, std::nullopt);
+}
+
+PlacedShape make_shape(const TorusObject& torus) {
+  return place(make_torus(torus.major_mm, torus.minor_mm));
+}
+
+PlacedShape make_shape(const RoundedBoxObject& box) {
+  return place(make_rounded_box({box.width_mm, box.height_mm, box.depth_mm}, box.edge_mm));
+}
+
+PlacedShape make_shape(const ReliefObject& relief) {
+  return place(make_relief({relief.width_mm, relief.height_mm, relief.depth_mm}, relief.sharpness,
+                           relief.ridge_height, static_cast<std::uint32_t>(relief.ridges)));
+}
+
+PlacedShape make_shape(const BlobObject& blob) {
+  return place(make_blob(blob.radius_mm, blob.bump, blob.scale, blob.seed));
+}
+
+PlacedShape make_shape(const DragonObject& dragon) { return place(make_dragon(dragon.length_mm)); }
+
+}  // namespace
+
+PlacedShape place_shape(const ObjectSpec& object) {
+  return std::visit([](const auto& o) { return make_shape(o); }, object);
+}
+
+void check_mesh(const MeshObject& object) {
+  reading_mesh([&] {
+    TriangleMesh mesh = read_mesh(object.file);
+    make_smooth(mesh, object.smooth);
+  });
+}
+
+}  // namespace translucube
