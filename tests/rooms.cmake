@@ -14,7 +14,7 @@ set(rooms
   "renderer/shape: renderer/base renderer/shape/file renderer/shape/smooth"
   "renderer/shape/file: renderer/shape renderer/base picture/sandbox"
   "renderer/shape/smooth: renderer/shape renderer/base"
-  "renderer/shape/body: renderer/shape renderer/base"
+  "renderer/shape/body: renderer/shape renderer/shape/smooth renderer/base"
   "renderer/reader: renderer/shape/file picture picture/light picture/oiio picture/sandbox"
   "renderer/light: renderer/base picture"
   "renderer/optics: renderer/base renderer/light"

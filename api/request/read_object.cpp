@@ -11,16 +11,21 @@ namespace {
 
 using nlohmann::json;
 
-/// Thinner bodies are lost in the rounding of double precision.
-constexpr double least_share = 1e-6;
+/// Thinner bodies are lost in rounding: in double precision, or in the single precision in which
+/// meshes are searched for what a ray meets.
+struct LeastShare {
+  double share;
+  const char* text;
+};
+constexpr LeastShare exact{1e-6, "must be at least a millionth of the largest extent"};
+constexpr LeastShare of_triangles{1e-4, "must be at least 1/10000 of the largest extent"};
 
 void check_extents(std::initializer_list<std::pair<const char*, double>> extents,
-                   FieldReader& object) {
+                   FieldReader& object, const LeastShare& least = exact) {
   double largest = 0;
   for (const auto& [name, extent] : extents) largest = std::max(largest, extent);
   for (const auto& [name, extent] : extents)
-    if (extent < least_share * largest)
-      object.fault(name, "must be at least a millionth of the largest extent");
+    if (extent < least.share * largest) object.fault(name, least.text);
 }
 
 /// What must hold between the parameters of an object.
@@ -53,20 +58,19 @@ void check(const TorusObject& torus, FieldReader& object) {
     object.fault("minor_mm", "must be at least a thousandth of major_mm");
 }
 void check(const RoundedBoxObject& box, FieldReader& object) {
-  check_extents(
-      {{"width_mm", box.width_mm}, {"height_mm", box.height_mm}, {"depth_mm", box.depth_mm}},
-      object);
-  const double least = std::min({box.width_mm, box.height_mm, box.depth_mm});
-  if (box.edge_mm > 0.5 * least)
+  check_extents({{"width_mm", box.width_mm},
+                 {"height_mm", box.height_mm},
+                 {"depth_mm", box.depth_mm},
+                 {"edge_mm", box.edge_mm}},
+                object, of_triangles);
+  if (box.edge_mm > 0.5 * std::min({box.width_mm, box.height_mm, box.depth_mm}))
     object.fault("edge_mm", "must be at most half of width_mm, height_mm and depth_mm");
-  if (box.edge_mm < least_share * std::max({box.width_mm, box.height_mm, box.depth_mm}))
-    object.fault("edge_mm", "must be at least a millionth of the largest extent");
 }
 void check(const ReliefObject& relief, FieldReader& object) {
   check_extents({{"width_mm", relief.width_mm},
                  {"height_mm", relief.height_mm},
                  {"depth_mm", relief.depth_mm}},
-                object);
+                object, of_triangles);
 }
 void check(const BlobObject&, FieldReader&) {}
 void check(const DragonObject&, FieldReader&) {}

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 
+#include "renderer/base/recently_used.h"
 #include "renderer/shape/body/body.h"
 #include "renderer/shape/file/mesh_file.h"
 #include "renderer/shape/mesh.h"
 
 namespace translucube {
 namespace {
-
-constexpr std::uint64_t most_body_triangles = 1'000'000;
 
 PlacedShape make_shape(const SphereObject& sphere) {
   return {Sphere{}, {}, sphere.radius_mm, -1, {}};
@@ -70,32 +69,44 @@ PlacedShape make_shape(const BowlObject& bowl) {
   return {Bowl(inner), {0, 0.5 * bowl.radius_mm, 0}, bowl.radius_mm, -1, {}};
 }
 
-PlacedShape place(BodyMesh body) {
-  // Of what is thin in a large body, a hundredth of a percent; else as wished of any mesh.
-  constexpr double of_thinnest = 2e-4;
-  const double error = of_thinnest * body.thinnest / bounding_radius(body.mesh);
-  refine(body.mesh, std::min(body.chord_error, error), most_body_triangles);
-  return place(body.mesh, std::nullopt);
+BodyMesh make_body(const TorusObject& torus) { return make_torus(torus.major_mm, torus.minor_mm); }
+
+BodyMesh make_body(const RoundedBoxObject& box) {
+  return make_rounded_box({box.width_mm, box.height_mm, box.depth_mm}, box.edge_mm);
 }
 
-PlacedShape make_shape(const TorusObject& torus) {
-  return place(make_torus(torus.major_mm, torus.minor_mm));
+BodyMesh make_body(const ReliefObject& relief) {
+  return make_relief({relief.width_mm, relief.height_mm, relief.depth_mm}, relief.sharpness,
+                     relief.ridge_height, static_cast<std::uint32_t>(relief.ridges));
 }
 
-PlacedShape make_shape(const RoundedBoxObject& box) {
-  return place(make_rounded_box({box.width_mm, box.height_mm, box.depth_mm}, box.edge_mm));
+BodyMesh make_body(const BlobObject& blob) {
+  return make_blob(blob.radius_mm, blob.bump, blob.scale, blob.seed);
 }
 
-PlacedShape make_shape(const ReliefObject& relief) {
-  return place(make_relief({relief.width_mm, relief.height_mm, relief.depth_mm}, relief.sharpness,
-                           relief.ridge_height, static_cast<std::uint32_t>(relief.ridges)));
+BodyMesh make_body(const DragonObject& dragon) { return make_dragon(dragon.length_mm); }
+
+template <class Object>
+concept MadeBody = requires(const Object& object) {
+  make_body(object);
+};
+
+/// Bodies of our own depend on their numbers alone, and take longer to make than a first pass of
+/// another material does: those that were asked for last are kept.
+PlacedShape remembered(const ObjectSpec& object, BodyMesh (*make)(const ObjectSpec&)) {
+  constexpr std::uint64_t most_triangles = 1'000'000;
+  static RecentlyUsed<ObjectSpec, PlacedShape> bodies(most_triangles);
+  if (const auto known = bodies.find(object)) return *known;
+  const TriangleMesh mesh = refined(make(object));
+  const auto placed = std::make_shared<const PlacedShape>(place(mesh, std::nullopt));
+  bodies.keep(object, placed, mesh.triangles.size());
+  return *placed;
 }
 
-PlacedShape make_shape(const BlobObject& blob) {
-  return place(make_blob(blob.radius_mm, blob.bump, blob.scale, blob.seed));
+template <MadeBody Object>
+PlacedShape make_shape(const Object& object) {
+  return remembered(object, [](const ObjectSpec& o) { return make_body(std::get<Object>(o)); });
 }
-
-PlacedShape make_shape(const DragonObject& dragon) { return place(make_dragon(dragon.length_mm)); }
 
 }  // namespace
 

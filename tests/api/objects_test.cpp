@@ -98,9 +98,9 @@ TEST(SceneObjects, TellAllTheirFaultsAtOnce) {
   fault_at("/scene/object/minor_mm", object(R"("type":"torus","major_mm":6,"minor_mm":0.005)"));
   accepted(object(R"("type":"torus","major_mm":6,"minor_mm":5.999)"));
   fault_at("/scene/object/edge_mm", object(R"("type":"rounded-box","depth_mm":7.9)"));
-  fault_at("/scene/object/edge_mm", object(R"("type":"rounded-box","edge_mm":2e-5)"));
+  fault_at("/scene/object/edge_mm", object(R"("type":"rounded-box","edge_mm":2.7e-3)"));
   accepted(object(R"("type":"rounded-box","edge_mm":14)"));
-  fault_at("/scene/object/depth_mm", object(R"("type":"relief","depth_mm":1e-5)"));
+  fault_at("/scene/object/depth_mm", object(R"("type":"relief","depth_mm":3e-3)"));
   for (const char* ridges : {"0", "65", "2.5", "-1", "\"5\"", "1e30"})
     fault_at("/scene/object/ridges", object(R"("type":"relief","ridges":)" + std::string(ridges)));
   EXPECT_THAT(pointers(object(R"("type":"relief","sharpness":1.01,"ridge_height":1,"ridges":[])")),

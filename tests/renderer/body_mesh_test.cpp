@@ -18,13 +18,6 @@ namespace {
 
 using std::numbers::pi;
 
-/// As the scene has it (scene/placed_shape.cpp).
-TriangleMesh refined(BodyMesh body) {
-  TriangleMesh mesh = std::move(body.mesh);
-  refine(mesh, std::min(body.chord_error, 2e-4 * body.thinnest / bounding_radius(mesh)), 1'000'000);
-  return mesh;
-}
-
 void expect_closed(const TriangleMesh& mesh) {
   TriangleMesh closed = mesh;
   close_mesh(closed);

@@ -10,7 +10,6 @@
 
 #include "renderer/scene/placed_shape.h"
 #include "renderer/shape/body/body.h"
-#include "renderer/shape/smooth/refine.h"
 #include "tests/support/meshes.h"
 #include "tests/support/truths.h"
 
@@ -40,17 +39,9 @@ std::vector<Body> bodies() {
 /// Bodies of our own that are meshes: what a request makes of them, and their volume in closed form
 /// or, where there is none, that of their triangles.
 std::vector<Body> made_bodies() {
-  const auto place = [](const ObjectSpec& object, double volume_mm3) {
+  const auto body_of = [](const std::string& name, const ObjectSpec& object, double volume_mm3) {
     const PlacedShape placed = place_shape(object);
-    return std::pair(placed.shape, volume_mm3 / std::pow(placed.unit_mm, 3));
-  };
-  const auto body_of = [&](const std::string& name, const ObjectSpec& object, double volume_mm3) {
-    const auto [shape, volume] = place(object, volume_mm3);
-    return Body{name, shape, volume};
-  };
-  const auto refined_volume = [](BodyMesh made) {
-    refine(made.mesh, made.chord_error, 1'000'000);
-    return volume(made.mesh);
+    return Body{name, placed.shape, volume_mm3 / std::pow(placed.unit_mm, 3)};
   };
   return {
       body_of("torus", TorusObject{14, 6}, 2 * pi * pi * 14 * 36),
@@ -61,9 +52,9 @@ std::vector<Body> made_bodies() {
       body_of("relief", ReliefObject{40, 40, 8, 0.5, 0.5, 5}, 40 * 40 * 6),
       body_of("sine relief", ReliefObject{40, 40, 8, 0, 0.9, 9}, 40 * 40 * 4.4),
       body_of("square relief", ReliefObject{40, 40, 8, 1, 0.5, 3}, 40 * 40 * 6),
-      body_of("blob", BlobObject{}, refined_volume(make_blob(20, 0.3, 1, 1))),
+      body_of("blob", BlobObject{}, volume(refined(make_blob(20, 0.3, 1, 1)))),
       body_of("sphere as a blob", BlobObject{20, 0, 1, 1}, 4 * pi / 3 * 8000),
-      body_of("dragon", DragonObject{}, refined_volume(make_dragon(44)))};
+      body_of("dragon", DragonObject{}, volume(refined(make_dragon(44))))};
 }
 
 /// A direction out of `count` that cover the sphere evenly (Fibonacci spiral), turned by `turn`.

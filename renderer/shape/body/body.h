@@ -9,11 +9,15 @@
 
 namespace translucube {
 
+/// Coarse; refined() is what rays meet.
 struct BodyMesh {
   TriangleMesh mesh;
   double thinnest = 0;        ///< what light must tell from the rest of the body
   double chord_error = 2e-5;  ///< that no picture shows, in radii (smooth/refine.h)
 };
+
+/// As fine as no picture shows, of at most a million triangles.
+TriangleMesh refined(BodyMesh body);
 
 /// A ring about y: `major` from the axis to the middle of the tube, `minor` its radius.
 BodyMesh make_torus(double major, double minor);
