@@ -11,7 +11,7 @@
 #include "renderer/shape/body/isosurface.h"
 #include "renderer/shape/smooth/normals.h"
 #include "renderer/shape/smooth/refine.h"
-#include "tests/support/scenes.h"
+#include "renderer/shape/triangle_mesh.h"
 
 namespace translucube::test {
 namespace {
