@@ -12,10 +12,15 @@ using nlohmann::json;
 namespace {
 
 /// A number's entry in a list of parameters; its range is closed.
-json number_parameter(const char* name, const char* unit, const Range& range, double value,
+template <class Number>
+json number_parameter(const char* name, const char* unit, const Range& range, Number value,
                       const char* description) {
-  json parameter{{"name", name},          {"type", "number"}, {"minimum", range.low},
-                 {"maximum", range.high}, {"default", value}, {"description", description}};
+  json parameter{{"name", name},
+                 {"type", std::is_integral_v<Number> ? "integer" : "number"},
+                 {"minimum", static_cast<Number>(range.low)},
+                 {"maximum", static_cast<Number>(range.high)},
+                 {"default", value},
+                 {"description", description}};
   if (unit != nullptr) parameter["unit"] = unit;
   return parameter;
 }
@@ -66,11 +71,19 @@ json oil_film_part(const RenderRequest& defaults) {
 template <class Object>
 json object_json(const RenderRequest& defaults) {
   const auto* configured = std::get_if<Object>(&defaults.object);
-  const Object object = configured ? *configured : Object{};
+  constexpr Object usual;
+  const Object& object = configured ? *configured : usual;
   json parameters = json::array();
-  for (const auto& parameter : ObjectKind<Object>::parameters)
-    parameters.push_back(number_parameter(parameter.name, "mm", parameter.range,
-                                          object.*parameter.member, parameter.description));
+  for (const auto& parameter : ObjectKind<Object>::parameters) {
+    const auto add = [&](auto value) {
+      parameters.push_back(number_parameter(parameter.name, parameter.unit, parameter.range, value,
+                                            parameter.description));
+    };
+    if (const auto* real = std::get_if<double Object::*>(&parameter.member))
+      add(object.**real);
+    else
+      add(object.*std::get<std::uint64_t Object::*>(parameter.member));
+  }
   return {{"name", ObjectKind<Object>::name},
           {"description", ObjectKind<Object>::description},
           {"parameters", std::move(parameters)}};
@@ -105,7 +118,12 @@ std::string objects_json(const Catalog& catalog) {
                      {"type", "string"},
                      {"description",
                       "OBJ or PLY in millimetres, in a folder that the service's configuration "
-                      "allows (none by default)."}}}}});
+                      "allows (none by default)."}},
+                    {{"name", "smooth"},
+                     {"type", "boolean"},
+                     {"description",
+                      "Whether its triangles stand for a curved surface. Not given: if the file "
+                      "has normals that say so."}}}}});
   return json{{"objects", std::move(list)},
               {"backdrop", backdrop_part(catalog.defaults)},
               {"oil_film", oil_film_part(catalog.defaults)}}

@@ -62,12 +62,16 @@ json material_json(const MaterialRequest& material) {
 
 json object_json(const ObjectRequest& object) {
   return std::visit(Overloaded{[](const MeshRequest& mesh) {
-                                 return json{{"type", "mesh"}, {"file", mesh.file}};
+                                 json values{{"type", "mesh"}, {"file", mesh.file}};
+                                 if (mesh.smooth) values["smooth"] = *mesh.smooth;
+                                 return values;
                                },
                                []<class Object>(const Object& own) {
                                  json values{{"type", ObjectKind<Object>::name}};
                                  for (const auto& parameter : ObjectKind<Object>::parameters)
-                                   values[parameter.name] = own.*parameter.member;
+                                   std::visit(
+                                       [&](auto member) { values[parameter.name] = own.*member; },
+                                       parameter.member);
                                  return values;
                                }},
                     object);

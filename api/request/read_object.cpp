@@ -2,6 +2,7 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 
+#include "api/base/overloaded.h"
 #include "api/request/object_parameters.h"
 #include "api/request/read_request.h"
 
@@ -10,16 +11,21 @@ namespace {
 
 using nlohmann::json;
 
-/// Thinner bodies are lost in the rounding of double precision.
-constexpr double least_share = 1e-6;
+/// Thinner bodies are lost in rounding: in double precision, or in the single precision in which
+/// meshes are searched for what a ray meets.
+struct LeastShare {
+  double share;
+  const char* text;
+};
+constexpr LeastShare exact{1e-6, "must be at least a millionth of the largest extent"};
+constexpr LeastShare of_triangles{1e-4, "must be at least 1/10000 of the largest extent"};
 
 void check_extents(std::initializer_list<std::pair<const char*, double>> extents,
-                   FieldReader& object) {
+                   FieldReader& object, const LeastShare& least = exact) {
   double largest = 0;
   for (const auto& [name, extent] : extents) largest = std::max(largest, extent);
   for (const auto& [name, extent] : extents)
-    if (extent < least_share * largest)
-      object.fault(name, "must be at least a millionth of the largest extent");
+    if (extent < least.share * largest) object.fault(name, least.text);
 }
 
 /// What must hold between the parameters of an object.
@@ -46,26 +52,59 @@ void check(const BowlObject& bowl, FieldReader& object) {
   if (bowl.thickness_mm >= bowl.radius_mm)
     object.fault("thickness_mm", "must be less than radius_mm");
 }
+void check(const TorusObject& torus, FieldReader& object) {
+  if (torus.minor_mm >= torus.major_mm) object.fault("minor_mm", "must be less than major_mm");
+  if (torus.minor_mm < 1e-3 * torus.major_mm)
+    object.fault("minor_mm", "must be at least a thousandth of major_mm");
+}
+void check(const RoundedBoxObject& box, FieldReader& object) {
+  check_extents({{"width_mm", box.width_mm},
+                 {"height_mm", box.height_mm},
+                 {"depth_mm", box.depth_mm},
+                 {"edge_mm", box.edge_mm}},
+                object, of_triangles);
+  if (box.edge_mm > 0.5 * std::min({box.width_mm, box.height_mm, box.depth_mm}))
+    object.fault("edge_mm", "must be at most half of width_mm, height_mm and depth_mm");
+}
+void check(const ReliefObject& relief, FieldReader& object) {
+  check_extents({{"width_mm", relief.width_mm},
+                 {"height_mm", relief.height_mm},
+                 {"depth_mm", relief.depth_mm}},
+                object, of_triangles);
+}
+void check(const BlobObject&, FieldReader&) {}
+void check(const DragonObject&, FieldReader&) {}
 
 template <class Object>
-void read_lengths(FieldReader& reader, ObjectRequest& out, const Faults& faults) {
+void read_numbers(FieldReader& reader, ObjectRequest& out, const Faults& faults) {
   const auto* before = std::get_if<Object>(&out);
   Object object = before ? *before : Object{};
   const std::size_t faults_before = faults.count();
   for (const auto& parameter : ObjectKind<Object>::parameters)
-    if (const auto length = reader.number(parameter.name, parameter.range))
-      object.*parameter.member = *length;
+    std::visit(Overloaded{[&](double Object::*member) {
+                            if (const auto number = reader.number(parameter.name, parameter.range))
+                              object.*member = *number;
+                          },
+                          [&](std::uint64_t Object::*member) {
+                            if (const auto number = reader.integer(
+                                    parameter.name, static_cast<std::uint64_t>(parameter.range.low),
+                                    static_cast<std::uint64_t>(parameter.range.high)))
+                              object.*member = *number;
+                          }},
+               parameter.member);
   if (faults.count() == faults_before) check(object, reader);
   out = object;
 }
 
 void read_mesh(FieldReader& reader, const Catalog& catalog, ObjectRequest& out, Faults& faults) {
   const auto file = reader.string("file", Presence::required);
+  const auto smooth = reader.boolean("smooth");
   if (!file) return;
   const std::string where = reader.pointer_to("file");
   auto path = resolve_file(*file, where, catalog, faults);
   if (!path) return;
-  if (check_file(check_mesh, *path, where, catalog, faults)) out = MeshRequest{std::move(*path)};
+  const auto check = [&](const std::string& name) { check_mesh({name, smooth}); };
+  if (check_file(check, *path, where, catalog, faults)) out = MeshRequest{std::move(*path), smooth};
 }
 
 std::string type_of(const ObjectRequest& request) {
@@ -92,7 +131,7 @@ void read_object(const json& value, const std::string& pointer, const Catalog& c
     names.push_back(ObjectKind<Object>::name);
     if (type != names.back()) return;
     known = true;
-    read_lengths<Object>(reader, out, faults);
+    read_numbers<Object>(reader, out, faults);
   });
   names.emplace_back("mesh");
   if (known)

@@ -3,7 +3,7 @@
 // The parts of a request, read over their defaults; shared by requests and by the defaults
 // themselves in config/service.json.
 
-#include <filesystem>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -13,9 +13,6 @@
 #include "api/request/request.h"
 
 namespace translucube::api {
-
-/// Every integer up to it is exact in double precision, hence in every JSON reader.
-inline constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 53) - 1;
 
 /// A request says where in the cube its material is; the defaults must not.
 enum class MaterialPoint { required, refused };
@@ -52,7 +49,7 @@ std::optional<std::string> resolve_file(const std::string& file, const std::stri
 
 /// Whether such a file is what it has to be, by the renderer's check, unless the catalog knows it
 /// already; what it cannot tell now counts as right.
-bool check_file(void (*check)(const std::filesystem::path&), const std::string& file,
+bool check_file(const std::function<void(const std::string&)>& check, const std::string& file,
                 const std::string& pointer, const Catalog& catalog, Faults& faults);
 
 }  // namespace translucube::api

@@ -16,6 +16,9 @@
 
 namespace translucube::api {
 
+/// Every integer up to it is exact in double precision, hence in every JSON reader.
+inline constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 53) - 1;
+
 inline Vec3 vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 /// `coefficients` of a material; exactly one of sigma_a and sigma_a_peak.
@@ -64,10 +67,12 @@ struct EnvironmentRequest {
 
 struct MeshRequest {
   std::string file;
+  std::optional<bool> smooth = {};  ///< not given: as its normals say
   friend bool operator==(const MeshRequest&, const MeshRequest&) = default;
 };
 using ObjectRequest =
-    std::variant<SphereObject, MeshRequest, PlateObject, BoxObject, WedgeObject, BowlObject>;
+    std::variant<SphereObject, MeshRequest, PlateObject, BoxObject, WedgeObject, BowlObject,
+                 TorusObject, RoundedBoxObject, ReliefObject, BlobObject, DragonObject>;
 
 struct CameraRequest {
   std::array<double, 3> position_mm{0, 0, 90}, target_mm{0, 0, 0}, up{0, 1, 0};

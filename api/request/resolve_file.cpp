@@ -77,8 +77,8 @@ std::optional<std::string> resolve_file(const std::string& file, const std::stri
   return std::nullopt;
 }
 
-bool check_file(void (*check)(const fs::path&), const std::string& file, const std::string& pointer,
-                const Catalog& catalog, Faults& faults) {
+bool check_file(const std::function<void(const std::string&)>& check, const std::string& file,
+                const std::string& pointer, const Catalog& catalog, Faults& faults) {
   if (catalog.knows_files) return true;
   try {
     check(file);

@@ -92,10 +92,11 @@ SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
   SceneSpec spec;
   spec.material = material_of(request.material, catalog);
   spec.model = light_model(request, spec.material);
-  spec.object = std::visit(
-      Overloaded{[](const MeshRequest& mesh) -> ObjectSpec { return MeshObject{mesh.file}; },
-                 [](const auto& object) -> ObjectSpec { return object; }},
-      request.object);
+  spec.object = std::visit(Overloaded{[](const MeshRequest& mesh) -> ObjectSpec {
+                                        return MeshObject{mesh.file, mesh.smooth};
+                                      },
+                                      [](const auto& object) -> ObjectSpec { return object; }},
+                           request.object);
   using EnvironmentSource = decltype(spec.environment.source);
   spec.environment.source =
       std::visit(Overloaded{[&](const NamedEnvironment& named) -> EnvironmentSource {

@@ -38,6 +38,8 @@ inline Vec3 direction_of(Vec3 v) {
       {std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent), std::scalbn(v.z, -exponent)});
 }
 
+inline Vec3 unit_or_zero(Vec3 v) { return v == Vec3{} ? v : direction_of(v); }
+
 /// Linear RGB (Rec.709 primaries, D65 white), any scale, never clamped.
 struct Rgb {
   float r = 0, g = 0, b = 0;

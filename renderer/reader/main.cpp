@@ -2,6 +2,7 @@
 // (picture/sandbox). It finds the file open, and leaves its answer where it was told to. Not for
 // people: the service and the command line start it.
 
+#include <array>
 #include <string_view>
 
 #include "picture/light/decode.h"
@@ -40,9 +41,12 @@ void load_codecs(std::span<const char> bytes) {
 
 void read_mesh(MeshFormat format, std::span<const char> bytes, const Answer& answer) {
   const TriangleMesh mesh = parse_mesh(format, {bytes.data(), bytes.size()});
-  const std::uint64_t vertices = mesh.vertices.size(), triangles = mesh.triangles.size();
-  answer({bytes_of(vertices), bytes_of(triangles), std::as_bytes(std::span(mesh.vertices)),
-          std::as_bytes(std::span(mesh.triangles))});
+  const std::array<std::uint64_t, 4> counts{mesh.vertices.size(), mesh.triangles.size(),
+                                            mesh.normals.size(), mesh.corner_normals.size()};
+  answer({bytes_of(counts[0]), std::as_bytes(std::span(mesh.vertices)), bytes_of(counts[1]),
+          std::as_bytes(std::span(mesh.triangles)), bytes_of(counts[2]),
+          std::as_bytes(std::span(mesh.normals)), bytes_of(counts[3]),
+          std::as_bytes(std::span(mesh.corner_normals))});
 }
 
 }  // namespace

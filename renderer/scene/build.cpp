@@ -5,71 +5,10 @@
 #include "picture/image_io.h"
 #include "picture/light_map.h"
 #include "renderer/scene/light.h"
-#include "renderer/scene/scene.h"
-#include "renderer/shape/file/mesh_file.h"
-#include "renderer/shape/mesh.h"
+#include "renderer/scene/placed_shape.h"
 
 namespace translucube {
 namespace {
-
-struct PlacedShape {
-  AnyShape shape;
-  Vec3 center_mm;
-  double unit_mm;
-  double back;    ///< least z, in units
-  double bottom;  ///< least y
-};
-
-PlacedShape make_shape(const SphereObject& sphere) {
-  return {Sphere{}, {}, sphere.radius_mm, -1, -1};
-}
-
-PlacedShape make_shape(const MeshObject& object) {
-  try {
-    const TriangleMesh mesh = read_mesh(object.file);
-    const BuiltMesh built = build_mesh(mesh);
-    const auto least = [&](double Vec3::*axis) {
-      return (std::ranges::min(mesh.vertices, {}, axis).*axis - built.center.*axis) / built.radius;
-    };
-    return {built.mesh, built.center, built.radius, least(&Vec3::z), least(&Vec3::y)};
-  } catch (const MeshUnavailable& error) {
-    throw SceneError(SceneError::Part::object, error.what(), true);
-  } catch (const MeshError& error) {
-    throw SceneError(SceneError::Part::object, error.what());
-  }
-}
-
-/// A body within a box of these extents, made in units of the box's bounding sphere.
-template <class Make>
-PlacedShape make_flat_faced(Vec3 extents_mm, Make&& make) {
-  const double unit = 0.5 * length(extents_mm);
-  return {make(extents_mm * (0.5 / unit), unit),
-          {},
-          unit,
-          -0.5 * extents_mm.z / unit,
-          -0.5 * extents_mm.y / unit};
-}
-
-PlacedShape make_shape(const PlateObject& plate) {
-  return make_flat_faced({plate.width_mm, plate.height_mm, plate.thickness_mm},
-                         [](Vec3 half, double) { return make_box(half); });
-}
-
-PlacedShape make_shape(const BoxObject& box) {
-  return make_flat_faced({box.width_mm, box.height_mm, box.depth_mm},
-                         [](Vec3 half, double) { return make_box(half); });
-}
-
-PlacedShape make_shape(const WedgeObject& wedge) {
-  return make_flat_faced(
-      {wedge.width_mm, wedge.height_mm, wedge.thick_mm},
-      [&](Vec3 half, double unit) { return make_wedge(half, wedge.thin_mm / unit); });
-}
-
-PlacedShape make_shape(const BowlObject& bowl) {
-  const double inner = 1 - bowl.thickness_mm / bowl.radius_mm;
-  return {Bowl(inner), {0, 0.5 * bowl.radius_mm, 0}, bowl.radius_mm, -1, -1};
-}
 
 Backdrop make_backdrop(const BackdropSpec& spec, const PlacedShape& placed) {
   const double unit = placed.unit_mm;
@@ -152,16 +91,6 @@ void use_dipole(const DipoleModel& model, const SceneSpec& spec, Scene& scene) {
 
 }  // namespace
 
-void check_mesh(const std::filesystem::path& file) {
-  try {
-    read_mesh(file);
-  } catch (const MeshUnavailable& error) {
-    throw SceneError(SceneError::Part::object, error.what(), true);
-  } catch (const MeshError& error) {
-    throw SceneError(SceneError::Part::object, error.what());
-  }
-}
-
 void check_environment(const std::filesystem::path& file) {
   const auto refuse = [&](std::string why, bool unavailable) {
     const std::string name = file.string() + ": ";
@@ -179,7 +108,7 @@ void check_environment(const std::filesystem::path& file) {
 
 std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache* environments) {
   EnvironmentCache own;
-  const PlacedShape placed = std::visit([](const auto& o) { return make_shape(o); }, spec.object);
+  const PlacedShape placed = place_shape(spec.object);
   const double unit = placed.unit_mm;
   const auto to_body = [&](Vec3 p) { return (p - placed.center_mm) * (1 / unit); };
   auto scene = std::make_shared<Scene>();
@@ -188,6 +117,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   scene->seed = spec.seed;
   scene->unit_mm = unit;
   scene->shape = placed.shape;
+  scene->refinement = placed.refinement;
   scene->interface = make_interface(spec.material);
   if (const auto& film = spec.material.oil_film)
     scene->oiled =

@@ -20,6 +20,7 @@
 #include "renderer/shape/bowl.h"
 #include "renderer/shape/mesh.h"
 #include "renderer/shape/polytope.h"
+#include "renderer/shape/smooth/refine.h"
 #include "renderer/shape/sphere.h"
 
 namespace translucube {
@@ -38,6 +39,7 @@ struct Scene {
   std::uint64_t seed = 0;
   double unit_mm = 1;  ///< the body's unit of length
   AnyShape shape;
+  std::optional<Refinement> refinement;  ///< of a mesh that was made smooth
   AnyInterface interface;
   std::optional<OiledPart> oiled;  ///< of a rough interface
   AnyInterior interior;

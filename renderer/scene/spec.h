@@ -20,6 +20,9 @@ struct SphereObject {
 };
 struct MeshObject {
   std::filesystem::path file;  ///< OBJ or PLY, in millimetres, closed
+  /// Whether its triangles stand for curved surfaces (shape/smooth); not given: if its file has
+  /// normals that say so.
+  std::optional<bool> smooth = {};
   friend bool operator==(const MeshObject&, const MeshObject&) = default;
 };
 /// A plate. As a box and a wedge, it has its bounding box centred at the origin.
@@ -41,8 +44,40 @@ struct BowlObject {
   double radius_mm = 20, thickness_mm = 3;  ///< outer radius, of the wall
   friend bool operator==(const BowlObject&, const BowlObject&) = default;
 };
+/// A ring about y.
+struct TorusObject {
+  double major_mm = 14, minor_mm = 6;  ///< from the axis to the middle of the tube, of the tube
+  friend bool operator==(const TorusObject&, const TorusObject&) = default;
+};
+/// A box with rounded edges.
+struct RoundedBoxObject {
+  double width_mm = 28, height_mm = 28, depth_mm = 28, edge_mm = 4;  ///< edge: radius, <= half
+  friend bool operator==(const RoundedBoxObject&, const RoundedBoxObject&) = default;
+};
+/// A plate whose front (+z) has ridges along y, within these extents (shape/body/body.h).
+struct ReliefObject {
+  double width_mm = 40, height_mm = 40, depth_mm = 8;
+  double sharpness = 0.5;     ///< of their edges: 0 sine, 1 upright walls
+  double ridge_height = 0.5;  ///< share of the depth
+  std::uint64_t ridges = 5;
+  friend bool operator==(const ReliefObject&, const ReliefObject&) = default;
+};
+/// A sphere with smooth random bumps.
+struct BlobObject {
+  double radius_mm = 20;
+  double bump = 0.3;  ///< their strength, [0, 1]
+  double scale = 1;   ///< their size, in radii
+  std::uint64_t seed = 1;
+  friend bool operator==(const BlobObject&, const BlobObject&) = default;
+};
+/// A dragon of ours that stands along x and looks left (shape/body/dragon.cpp).
+struct DragonObject {
+  double length_mm = 44;  ///< from the nose to the tail
+  friend bool operator==(const DragonObject&, const DragonObject&) = default;
+};
 using ObjectSpec =
-    std::variant<SphereObject, MeshObject, PlateObject, BoxObject, WedgeObject, BowlObject>;
+    std::variant<SphereObject, MeshObject, PlateObject, BoxObject, WedgeObject, BowlObject,
+                 TorusObject, RoundedBoxObject, ReliefObject, BlobObject, DragonObject>;
 
 struct ImageEnvironmentSpec {
   std::filesystem::path file;  ///< lat-long, linear RGB
@@ -139,10 +174,10 @@ class EnvironmentCache;
 std::shared_ptr<const Scene> build_scene(const SceneSpec& spec,
                                          EnvironmentCache* environments = nullptr);
 
-/// Throws SceneError with the reason, which does not name the file, if it cannot be read as a mesh
-/// (shape/file/mesh_file.h).
-void check_mesh(const std::filesystem::path& file);
-/// Likewise as an environment (picture/light_map.h).
+/// Throws SceneError with the reason, which does not name the file, if the object cannot be made of
+/// it (shape/file/mesh_file.h, shape/smooth/refine.h).
+void check_mesh(const MeshObject& object);
+/// Likewise of an environment's file (picture/light_map.h).
 void check_environment(const std::filesystem::path& file);
 
 }  // namespace translucube

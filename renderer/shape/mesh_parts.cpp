@@ -46,14 +46,17 @@ class Parts {
  public:
   explicit Parts(TriangleMesh& mesh) : mesh_(mesh) {}
 
-  void unite() {
+  std::size_t unite() {
     find();
-    if (parts_.size() == 1 && parts_[0].volume > 0) return;
+    if (parts_.size() == 1 && parts_[0].volume > 0) return 1;
     nest();
-    std::vector<Triangle> boundary;
+    std::vector<Triangle> boundary, normals;
     boundary.reserve(mesh_.triangles.size());
-    for (const Part& part : parts_) keep(part, boundary);
+    normals.reserve(mesh_.corner_normals.size());
+    for (const Part& part : parts_) keep(part, boundary, normals);
     mesh_.triangles = std::move(boundary);
+    mesh_.corner_normals = std::move(normals);
+    return parts_.size();
   }
 
  private:
@@ -158,7 +161,8 @@ class Parts {
     return std::fabs(solid_angle) > 2 * std::numbers::pi;
   }
 
-  void keep(const Part& part, std::vector<Triangle>& boundary) const {
+  void keep(const Part& part, std::vector<Triangle>& boundary,
+            std::vector<Triangle>& normals) const {
     // All that lies in one outermost part is oriented as that one is.
     int outermost = part.orientation;
     for (const std::uint32_t h : part.holders)
@@ -172,6 +176,10 @@ class Parts {
       Triangle v = mesh_.triangles[t];
       if (outward != wanted) std::swap(v[1], v[2]);
       boundary.push_back(v);
+      if (mesh_.corner_normals.empty()) continue;
+      Triangle n = mesh_.corner_normals[t];
+      if (outward != wanted) std::swap(n[1], n[2]);
+      normals.push_back(n);
     }
   }
 
@@ -272,6 +280,6 @@ class Parts {
 
 }  // namespace
 
-void unite_parts(TriangleMesh& mesh) { Parts(mesh).unite(); }
+std::size_t unite_parts(TriangleMesh& mesh) { return Parts(mesh).unite(); }
 
 }  // namespace translucube

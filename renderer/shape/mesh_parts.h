@@ -10,7 +10,7 @@ namespace translucube {
 /// in no other bounds a body however it is oriented; parts within it count by the winding number
 /// (non-zero is inside): one that is oriented the same way lies in the body and goes, one that is
 /// oriented the other way is a cavity. Throws MeshError that names two parts that meet. The edges
-/// must be closed already.
-void unite_parts(TriangleMesh& mesh);
+/// must be closed already. Returns how many parts there were.
+std::size_t unite_parts(TriangleMesh& mesh);
 
 }  // namespace translucube

@@ -36,6 +36,19 @@ void merge_vertices(TriangleMesh& mesh) {
     for (std::uint32_t& v : t) v = target[v];
 }
 
+void drop_degenerate(TriangleMesh& mesh) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle t = mesh.triangles[i];
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    mesh.triangles[kept] = t;
+    if (!mesh.corner_normals.empty()) mesh.corner_normals[kept] = mesh.corner_normals[i];
+    ++kept;
+  }
+  mesh.triangles.resize(kept);
+  if (!mesh.corner_normals.empty()) mesh.corner_normals.resize(kept);
+}
+
 void check_closed(const TriangleMesh& mesh) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -72,8 +85,7 @@ void close_mesh(TriangleMesh& mesh) {
     if (!std::isfinite(v.x + v.y + v.z))
       throw MeshError("the mesh has a vertex that is not finite");
   merge_vertices(mesh);
-  std::erase_if(mesh.triangles,
-                [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  drop_degenerate(mesh);
   if (mesh.triangles.empty()) throw MeshError("the mesh has no triangle");
   check_closed(mesh);
   unite_parts(mesh);

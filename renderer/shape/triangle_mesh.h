@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -19,7 +20,12 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
+  /// What a file says of the surface that the triangles stand for (smooth.h): unit, of either sign.
+  std::vector<Vec3> normals = {};
+  std::vector<Triangle> corner_normals = {};  ///< of each triangle into them; empty: there are none
 };
+/// Of a corner: its normal is that of its triangle.
+inline constexpr std::uint32_t no_normal = std::numeric_limits<std::uint32_t>::max();
 
 /// Merges equal vertices, drops triangles without area, and unites the parts to the boundary of one
 /// body, seen from outside (mesh_parts.h). Throws MeshError if it is empty, not finite, or not

@@ -23,18 +23,28 @@ std::uint64_t pixels(const api::RenderRequest& request) {
 /// The radius of the bounding sphere [mm].
 double radius_of(const api::ObjectRequest& object) {
   return std::visit(
-      api::Overloaded{[](const api::MeshRequest&) { return 0.0; },
-                      [](const SphereObject& sphere) { return sphere.radius_mm; },
-                      [](const BowlObject& bowl) { return bowl.radius_mm; },
-                      [](const PlateObject& plate) {
-                        return std::hypot(plate.width_mm, plate.height_mm, plate.thickness_mm) / 2;
-                      },
-                      [](const BoxObject& box) {
-                        return std::hypot(box.width_mm, box.height_mm, box.depth_mm) / 2;
-                      },
-                      [](const WedgeObject& wedge) {
-                        return std::hypot(wedge.width_mm, wedge.height_mm, wedge.thick_mm) / 2;
-                      }},
+      api::Overloaded{
+          [](const api::MeshRequest&) { return 0.0; },
+          [](const SphereObject& sphere) { return sphere.radius_mm; },
+          [](const BowlObject& bowl) { return bowl.radius_mm; },
+          [](const PlateObject& plate) {
+            return std::hypot(plate.width_mm, plate.height_mm, plate.thickness_mm) / 2;
+          },
+          [](const BoxObject& box) {
+            return std::hypot(box.width_mm, box.height_mm, box.depth_mm) / 2;
+          },
+          [](const WedgeObject& wedge) {
+            return std::hypot(wedge.width_mm, wedge.height_mm, wedge.thick_mm) / 2;
+          },
+          [](const TorusObject& torus) { return torus.major_mm + torus.minor_mm; },
+          [](const RoundedBoxObject& box) {
+            return std::hypot(box.width_mm, box.height_mm, box.depth_mm) / 2;
+          },
+          [](const ReliefObject& relief) {
+            return std::hypot(relief.width_mm, relief.height_mm, relief.depth_mm) / 2;
+          },
+          [](const BlobObject& blob) { return (1 + 0.45 * blob.bump) * blob.radius_mm; },
+          [](const DragonObject& dragon) { return 0.7 * dragon.length_mm; }},
       object);
 }
 

@@ -136,6 +136,8 @@ function parameterField({name, type, unit, minimum, maximum, values, description
   }
   const control = values ? select(values, value, change)
       : type === 'number' ? numberInput(value, {min: minimum, max: maximum, onchange: change})
+      : type === 'integer' ?
+        numberInput(value, {min: minimum, max: maximum, step: 1, onchange: change})
       : type === 'boolean' ? element('input', {
           type: 'checkbox', checked: Boolean(value),
           onchange: event => change(event.target.checked),

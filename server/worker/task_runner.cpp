@@ -40,6 +40,10 @@ const char* pointer_of(SceneError::Part part) {
       return "/scene/object";
     case SceneError::Part::environment:
       return "/scene/environment";
+    case SceneError::Part::lights:
+      return "/scene/lights";
+    case SceneError::Part::ground:
+      return "/scene/ground";
     case SceneError::Part::camera:
       return "/scene/camera";
   }

@@ -73,6 +73,7 @@ class Generator {
     if (rng_.bits() % 3 == 0) object[key] = number(usual);
   }
   json object() {
+    if (rng_.bits() % 32 == 0) return body();
     switch (rng_.bits() % 5) {
       case 0:
         return {{"type", "sphere"}, {"radius_mm", number(20)}};
@@ -94,6 +95,30 @@ class Generator {
                 {"thick_mm", number(10)}};
       default:
         return {{"type", "bowl"}, {"radius_mm", number(20)}, {"thickness_mm", number(3)}};
+    }
+  }
+  /// Seldom, as these take a while to make.
+  json body() {
+    switch (rng_.bits() % 5) {
+      case 0:
+        return {{"type", "torus"}, {"major_mm", number(14)}, {"minor_mm", number(6)}};
+      case 1:
+        return {{"type", "rounded-box"},
+                {"width_mm", number(28)},
+                {"height_mm", number(28)},
+                {"depth_mm", number(28)},
+                {"edge_mm", number(4)}};
+      case 2:
+        return {{"type", "relief"},      {"width_mm", number(40)},   {"height_mm", number(40)},
+                {"depth_mm", number(8)}, {"sharpness", number(0.5)}, {"ridges", rng_.bits() % 70}};
+      case 3:
+        return {{"type", "blob"},
+                {"radius_mm", number(20)},
+                {"bump", number(0.3)},
+                {"scale", number(1)},
+                {"seed", rng_.bits() % 100}};
+      default:
+        return {{"type", "dragon"}, {"length_mm", number(44)}};
     }
   }
   json environment() {

@@ -38,7 +38,8 @@ TEST(SceneObjects, OfTheListingAreTakenByTheirNames) {
         canonical_json(accepted(request_with(R"("scene":{"object":)" + given.dump() + "}"))));
     EXPECT_EQ(canonical["scene"]["object"], given);
   }
-  EXPECT_THAT(names, ElementsAre("sphere", "plate", "box", "wedge", "bowl", "mesh"));
+  EXPECT_THAT(names, ElementsAre("sphere", "plate", "box", "wedge", "bowl", "torus", "rounded-box",
+                                 "relief", "blob", "dragon", "mesh"));
 }
 
 TEST(SceneObjects, KeepTheirDefaultsWhereTheRequestSaysNothing) {
@@ -64,9 +65,25 @@ TEST(SceneObjects, OfAnotherConfigurationKeepItsDefaults) {
     }
 }
 
+TEST(SceneObjects, OfWholeNumbersStayWhole) {
+  const RenderRequest request = accepted(object(R"("type":"blob","seed":7.0)"));
+  EXPECT_EQ(request.object, ObjectRequest(BlobObject{20, 0.3, 1, 7}));
+  EXPECT_THAT(canonical_json(request), HasSubstr(R"("seed":7,"type":"blob")"));
+  const json listed = json::parse(objects_json(shipped_catalog()));
+  for (const json& part : listed["objects"])
+    for (const json& parameter : part["parameters"])
+      if (parameter["name"] == "ridges") {
+        EXPECT_EQ(parameter["type"], "integer");
+        EXPECT_EQ(parameter["minimum"].dump() + parameter["maximum"].dump(), "164");
+        EXPECT_FALSE(parameter.contains("unit"));
+      }
+}
+
 TEST(SceneObjects, UnknownTypeTellsTheKnownOnes) {
-  EXPECT_THAT(fault_at("/scene/object/type", object(R"("type":"teapot","lid":1)")),
-              HasSubstr("sphere, plate, box, wedge, bowl, mesh"));
+  EXPECT_THAT(
+      fault_at("/scene/object/type", object(R"("type":"teapot","lid":1)")),
+      HasSubstr("sphere, plate, box, wedge, bowl, torus, rounded-box, relief, blob, dragon, "
+                "mesh"));
 }
 
 TEST(SceneObjects, TellAllTheirFaultsAtOnce) {
@@ -77,6 +94,24 @@ TEST(SceneObjects, TellAllTheirFaultsAtOnce) {
               UnorderedElementsAre("/scene/object/height_mm", "/scene/object/thickness_mm"));
   fault_at("/scene/object/thin_mm", object(R"("type":"wedge","thin_mm":5,"thick_mm":4)"));
   fault_at("/scene/object/thickness_mm", object(R"("type":"bowl","thickness_mm":20)"));
+  fault_at("/scene/object/minor_mm", object(R"("type":"torus","major_mm":6,"minor_mm":6)"));
+  fault_at("/scene/object/minor_mm", object(R"("type":"torus","major_mm":6,"minor_mm":0.005)"));
+  accepted(object(R"("type":"torus","major_mm":6,"minor_mm":5.999)"));
+  fault_at("/scene/object/edge_mm", object(R"("type":"rounded-box","depth_mm":7.9)"));
+  fault_at("/scene/object/edge_mm", object(R"("type":"rounded-box","edge_mm":2.7e-3)"));
+  accepted(object(R"("type":"rounded-box","edge_mm":14)"));
+  fault_at("/scene/object/depth_mm", object(R"("type":"relief","depth_mm":3e-3)"));
+  for (const char* ridges : {"0", "65", "2.5", "-1", "\"5\"", "1e30"})
+    fault_at("/scene/object/ridges", object(R"("type":"relief","ridges":)" + std::string(ridges)));
+  EXPECT_THAT(pointers(object(R"("type":"relief","sharpness":1.01,"ridge_height":1,"ridges":[])")),
+              UnorderedElementsAre("/scene/object/sharpness", "/scene/object/ridge_height",
+                                   "/scene/object/ridges"));
+  EXPECT_THAT(
+      pointers(object(R"("type":"blob","bump":-0.1,"scale":0.4,"seed":1.5)")),
+      UnorderedElementsAre("/scene/object/bump", "/scene/object/scale", "/scene/object/seed"));
+  accepted(object(R"("type":"blob","seed":9007199254740991)"));
+  fault_at("/scene/object/seed", object(R"("type":"blob","seed":9007199254740992)"));
+  fault_at("/scene/object/length_mm", object(R"("type":"dragon","length_mm":0)"));
   accepted(object(R"("type":"wedge","thin_mm":4,"thick_mm":4)"));
 }
 

@@ -97,6 +97,29 @@ TEST_F(SceneFiles, MeshInAnAllowedFolderIsTaken) {
   EXPECT_EQ(std::get<MeshObject>(scene_spec(request, catalog).object).file, good);
 }
 
+TEST_F(SceneFiles, MeshIsSmoothWhereTheRequestSaysSo) {
+  const auto with = [&](const std::string& smooth) {
+    return request_with(R"("scene":{"object":{"type":"mesh","file":")" + good.string() + '"' +
+                        smooth + "}}");
+  };
+  const auto smooth_of = [&](const std::string& text) {
+    const RenderRequest request = accepted(text, catalog);
+    EXPECT_EQ(std::get<MeshObject>(scene_spec(request, catalog).object).smooth,
+              std::get<MeshRequest>(request.object).smooth);
+    return std::get<MeshRequest>(request.object).smooth;
+  };
+  EXPECT_EQ(smooth_of(with("")), std::nullopt);
+  EXPECT_EQ(smooth_of(with(R"(,"smooth":true)")), true);
+  EXPECT_EQ(smooth_of(with(R"(,"smooth":false)")), false);
+  for (const char* wrong : {"null", "1", "\"auto\""})
+    fault_at("/scene/object/smooth", with(std::string(R"(,"smooth":)") + wrong), catalog);
+  for (const char* given : {"", R"(,"smooth":true)", R"(,"smooth":false)"}) {
+    const std::string canonical = canonical_json(accepted(with(given), catalog));
+    EXPECT_THAT(canonical, HasSubstr(*given ? given + 1 : R"("type":"mesh"})"));
+    EXPECT_EQ(canonical_json(accepted(canonical, catalog)), canonical);
+  }
+}
+
 TEST_F(SceneFiles, RelativePathIsRelativeToTheAllowedFolders) {
   const RenderRequest request = accepted(mesh("good.obj"), catalog);
   EXPECT_EQ(std::get<MeshRequest>(request.object).file, good.string());

@@ -3,7 +3,8 @@
     blender -b --factory-startup -P tests/bench/cycles.py -- \
         --environment config/environments/forest.exr --out FOLDER \
         --material A0,alpha,sigma_s,sigma_a,samples [--material ...] \
-        [--seed 1 --seed 2] [--size 256] [--threads 0] [--multiple]
+        [--seed 1 --seed 2] [--size 256] [--threads 0] [--multiple] \
+        [--mesh FILE.obj] [--camera x,y,z]
 
 writes FOLDER/NAME-SEED.exr (linear, 32-bit float) for each and FOLDER/cycles.json with the CPU
 seconds of each render, less what every render pays once.
@@ -37,6 +38,8 @@ def arguments():
     parser.add_argument("--threads", type=int, default=0, help="0: all")
     parser.add_argument("--multiple", action="store_true",
                         help="multiple scattering between microfacets")
+    parser.add_argument("--mesh", help="OBJ of triangles, flat; instead of the unit sphere")
+    parser.add_argument("--camera", default="0,0,4.5", help="its position")
     return parser.parse_args(own)
 
 
@@ -77,17 +80,19 @@ def to_blender(x, y, z):
     return Vector((z, x, y))
 
 
-def add_camera(scene):
-    """A pinhole at (0, 0, 4.5) that looks at the origin, +y up, 32 degrees."""
+def add_camera(scene, position):
+    """A pinhole that looks at the origin, +y up, 32 degrees."""
     data = bpy.data.cameras.new("camera")
     data.type = "PERSP"
     data.sensor_fit = "VERTICAL"
     data.angle = math.radians(32)
     data.clip_start, data.clip_end = 0.01, 1000
     camera = bpy.data.objects.new("camera", data)
-    back, up = to_blender(0, 0, 1), to_blender(0, 1, 0)
-    right = up.cross(back)
-    camera.matrix_world = Matrix.Translation(to_blender(0, 0, 4.5)) @ Matrix(
+    place = to_blender(*position)
+    back = place.normalized()
+    right = to_blender(0, 1, 0).cross(back).normalized()
+    up = back.cross(right)
+    camera.matrix_world = Matrix.Translation(place) @ Matrix(
         (right, up, back)).transposed().to_4x4()
     scene.collection.objects.link(camera)
     scene.camera = camera
@@ -99,6 +104,22 @@ def add_sphere(scene):
     sphere = bpy.context.object
     bpy.ops.object.shade_smooth()
     return sphere
+
+
+def add_mesh(scene, file):
+    vertices, faces = [], []
+    with open(file) as lines:
+        for line in lines:
+            kind, *rest = line.split()
+            if kind == "v":
+                vertices.append(to_blender(*map(float, rest)))
+            elif kind == "f":
+                faces.append([int(i) - 1 for i in rest])
+    mesh = bpy.data.meshes.new("mesh")
+    mesh.from_pydata(vertices, [], faces)
+    body = bpy.data.objects.new("mesh", mesh)
+    scene.collection.objects.link(body)
+    return body
 
 
 def body_material(name, alpha, sigma_s, sigma_a, multiple):
@@ -177,8 +198,9 @@ def main():
         scene = empty_scene()
         settle(scene, options.size, options.threads)
         add_world(scene, options.environment)
-        add_camera(scene)
-        add_sphere(scene).data.materials.append(
+        add_camera(scene, [float(x) for x in options.camera.split(",")])
+        body = add_mesh(scene, options.mesh) if options.mesh else add_sphere(scene)
+        body.data.materials.append(
             body_material(name, alpha, sigma_s, sigma_a, options.multiple))
 
         def render(count, seed, file):

@@ -4,6 +4,6 @@
 #include "renderer/scene/spec.h"
 
 namespace translucube {
-void check_mesh(const std::filesystem::path&) {}
+void check_mesh(const MeshObject&) {}
 void check_environment(const std::filesystem::path&) {}
 }  // namespace translucube

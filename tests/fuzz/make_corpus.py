@@ -94,8 +94,11 @@ ply_ascii = ply_head % "ascii" + "".join("%g %g %g\n" % c for c in corners) + ""
     "4 %d %d %d %d\n" % q for q in quads)
 ply_binary = (ply_head % "binary_little_endian").encode() + b"".join(
     struct.pack("<3f", *c) for c in corners) + b"".join(struct.pack("<B4i", 4, *q) for q in quads)
+smooth_box = "vn 1 1 1\nvn nan 0 -1\n" + box.replace("f 1 3 4 2", "f 1//1 3/1/2 4//-1 2")
+smooth_ply = ply_head.replace("z\n", "z\nproperty float nx\nproperty float ny\nproperty float nz\n") % "ascii" + "".join(
+    "%g %g %g 1 0 0.5\n" % c for c in corners) + "".join("4 %d %d %d %d\n" % q for q in quads)
 meshes = [box.encode(), b"\xef\xbb\xbf# a box\r\n" + box.encode(), ply_ascii.encode(), ply_binary,
-          (box + box.replace("f 1", "f -8")).encode()]
+          (box + box.replace("f 1", "f -8")).encode(), smooth_box.encode(), smooth_ply.encode()]
 
 
 def exr(channels, attributes=b""):
@@ -125,8 +128,9 @@ pictures = [exr([b"B", b"G", b"R"]), exr([b"A", b"Y"]), png(2, b"\x80" * 3), png
             hdr + b"-Y 1 +X 2\n" + b"\x80" * 8, hdr + b"+X 2 -Y 1\n" + b"\x80" * 8,
             hdr + b"-Y 1 +X 8\n\x02\x02\0\x08" + b"\x88\x80" * 4]
 answer_head = lambda kind, size: b"TLCREAD1" + struct.pack("<IIQ", kind, 0, size)
-mesh_answer = (struct.pack("<QQ", 4, 4) + struct.pack("<12d", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1)
-               + struct.pack("<12I", 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3))
+mesh_answer = (struct.pack("<Q12d", 4, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1)
+               + struct.pack("<Q12I", 4, 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3)
+               + struct.pack("<Q3d", 1, 0, 0, 1) + struct.pack("<Q12I", 4, *[0] * 12))
 answers = [answer_head(1, len(mesh_answer)) + mesh_answer, answer_head(2, 4) + b"why?"]
 
 lines = [json.loads(line) for line in (root / "tests/api/malformed.jsonl").open()]

@@ -13,6 +13,7 @@
 #include "picture/sandbox/answer.h"
 #include "renderer/shape/file/mesh_format.h"
 #include "tests/support/meshes.h"
+#include "tests/support/scenes.h"
 
 namespace translucube::test {
 namespace {
@@ -78,6 +79,85 @@ TEST(ObjFile, MayBeWrittenAsProgramsWriteIt) {
     std::ranges::replace(text, '\n', '\r');
     EXPECT_NEAR(volume(obj(text)), 1, 1e-12) << text;
   }
+}
+
+/// The normals that a file gives to the corners of its triangles, each triangle's and corner's.
+std::vector<Vec3> given_normals(const TriangleMesh& mesh) {
+  std::vector<Vec3> all;
+  for (const Triangle& t : mesh.corner_normals)
+    for (const std::uint32_t n : t) all.push_back(n == no_normal ? Vec3{} : mesh.normals[n]);
+  return all;
+}
+
+const std::string tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+
+TEST(ObjFile, GivesCornersTheNormalsThatTheyName) {
+  const TriangleMesh none =
+      obj(tetrahedron + "vn 0 0 1\nf 1/2 3/1 2/1\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  EXPECT_TRUE(none.corner_normals.empty());
+  const TriangleMesh some = obj("vn 0 0 -2\nvn +3 0 0 \n" + tetrahedron +
+                                "f 1//1 3/7/1 2//-2\nf 1//2 2//2 4//3\nf 1//4 4 3\nf 2 3 4\nvn 0 "
+                                "4 0\nvn -nan(ind) 0 0\n");
+  EXPECT_THAT(given_normals(some),
+              testing::ElementsAre(Vec3{0, 0, -1}, Vec3{0, 0, -1}, Vec3{0, 0, -1}, Vec3{1, 0, 0},
+                                   Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{}, Vec3{}, Vec3{}, Vec3{},
+                                   Vec3{}, Vec3{}));
+}
+
+TEST(ObjFile, OfPolygonsAndPartsInsideOutKeepsNormalsAtTheirCorners) {
+  // Each corner of a box has the direction from its centre: after cutting and turning, too.
+  std::string text = obj_box({-1, -1, -1}, {1, 1, 1}, 1, true);
+  for (int i = 0; i < 8; ++i)
+    text += "vn " + std::to_string(i & 1 ? 1 : -1) + ' ' + std::to_string(i & 2 ? 1 : -1) + ' ' +
+            std::to_string(i & 4 ? 1 : -1) + '\n';
+  std::string with;
+  for (std::istringstream lines(text); std::getline(lines, text);) {
+    if (!text.starts_with("f")) {
+      with += text + '\n';
+      continue;
+    }
+    std::istringstream words(text.substr(1));
+    with += 'f';
+    for (std::string word; words >> word;) with += ' ' + word + "//" + word;
+    with += '\n';
+  }
+  const TriangleMesh mesh = obj(with);
+  ASSERT_EQ(mesh.corner_normals.size(), 12u);
+  for (std::size_t t = 0; t < 12; ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(length(mesh.normals[mesh.corner_normals[t][i]] -
+                         normalize(mesh.vertices[mesh.triangles[t][i]])),
+                  0, 1e-12);
+}
+
+TEST(ObjFile, IsRefusedForNormalsThatAreNone) {
+  const auto refused = [](const std::string& text) {
+    return refusal(MeshFormat::obj, tetrahedron + text + "f 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  };
+  EXPECT_EQ(refused("vn 0 0\nf 1 3 2\n"), "line 5: a normal needs three coordinates");
+  EXPECT_EQ(refused("vn 0 0 1 1\nf 1 3 2\n"), "line 5: a normal has three coordinates");
+  EXPECT_EQ(refused("vn 0 0 up\nf 1 3 2\n"), "line 5: \"up\" is no number");
+  EXPECT_EQ(refused("vn 0 0 1\nf 1//1 3//2 2//1\n"),
+            "line 6: normal 2 does not exist: there are 1");
+  EXPECT_EQ(refused("vn 0 0 1\nf 1//1 3//-2 2//1\n"), "line 6: normal -2 does not exist");
+  EXPECT_EQ(refused("vn 0 0 1\nf 1//1 3//0 2//1\n"), "line 6: \"3//0\" names no corner of a face");
+}
+
+TEST(PlyFile, GivesVerticesTheirNormals) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float nz\n"
+      "property float y\nproperty float z\nproperty float nx\n";
+  const std::string faces =
+      "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 -1 0 0 0 0\n1 -1 0 0 0 0\n0 0 1 0 0 2\n0 0 0 1 0 0\n"
+      "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  const TriangleMesh mesh = ply(head + "property float ny\n" + faces);
+  EXPECT_EQ(mesh.normals, (std::vector<Vec3>{{0, 0, -1}, {0, 0, -1}, {0, 1, 0}, {0, 0, 0}}));
+  EXPECT_EQ(mesh.corner_normals, mesh.triangles);
+  // Two of three say nothing; two of one kind are too many.
+  EXPECT_TRUE(ply(head + "property float na\n" + faces).corner_normals.empty());
+  EXPECT_EQ(refusal(MeshFormat::ply, head + "property float nx\n" + faces),
+            "nx, ny and nz are one number each");
 }
 
 TEST(ObjFile, IsRefusedWithTheLineAndWhy) {
@@ -381,10 +461,15 @@ TEST(MeshAnswer, IsBelievedInNothing) {
       const auto part = std::as_bytes(span);
       text.append(reinterpret_cast<const char*>(part.data()), part.size());
     };
+    const std::uint64_t normals = m.normals.size(), corners = m.corner_normals.size();
     add(std::span(&vertices, 1));
-    add(std::span(&triangles, 1));
     add(std::span(m.vertices));
+    add(std::span(&triangles, 1));
     add(std::span(m.triangles));
+    add(std::span(&normals, 1));
+    add(std::span(m.normals));
+    add(std::span(&corners, 1));
+    add(std::span(m.corner_normals));
     std::vector<std::byte> bytes(text.size());
     std::memcpy(bytes.data(), text.data(), text.size());
     return bytes;
@@ -400,6 +485,17 @@ TEST(MeshAnswer, IsBelievedInNothing) {
   EXPECT_THROW(unpack_mesh(packed(8, 12, bad)), AnswerError);
   bad = mesh;
   bad.vertices[2].y = std::nan("");
+  EXPECT_THROW(unpack_mesh(packed(8, 12, bad)), AnswerError);
+  bad = mesh;
+  bad.normals = {{0, 0, 1}};
+  bad.corner_normals.assign(11, {0, 0, 0});
+  EXPECT_THROW(unpack_mesh(packed(8, 12, bad)), AnswerError);
+  bad.corner_normals.push_back({0, 0, no_normal});
+  EXPECT_EQ(unpack_mesh(packed(8, 12, bad)).corner_normals, bad.corner_normals);
+  bad.corner_normals[7][1] = 1;
+  EXPECT_THROW(unpack_mesh(packed(8, 12, bad)), AnswerError);
+  bad.corner_normals[7][1] = 0;
+  bad.normals[0].z = infinity;
   EXPECT_THROW(unpack_mesh(packed(8, 12, bad)), AnswerError);
   const auto whole = packed(8, 12, mesh);
   for (std::size_t size = 0; size < whole.size(); ++size)

@@ -78,12 +78,12 @@ TEST(Mesh, FromObjAndPlyFilesIsTheSameBody) {
     const TriangleMesh read = read_mesh(folder / name);
     EXPECT_EQ(read.triangles.size(), mesh.triangles.size()) << name;
     EXPECT_NEAR(volume(read), volume(mesh), 1e-5) << name;
-    EXPECT_NO_THROW(check_mesh(folder / name));
+    EXPECT_NO_THROW(check_mesh({folder / name}));
   }
   std::ofstream(folder / "empty.obj") << "# nothing\n";
-  EXPECT_THROW(check_mesh(folder / "empty.obj"), SceneError);
-  EXPECT_THROW(check_mesh(folder / "absent.ply"), SceneError);
-  EXPECT_THROW(check_mesh("/etc/passwd"), SceneError);
+  EXPECT_THROW(check_mesh({folder / "empty.obj"}), SceneError);
+  EXPECT_THROW(check_mesh({folder / "absent.ply"}), SceneError);
+  EXPECT_THROW(check_mesh({"/etc/passwd"}), SceneError);
   std::filesystem::remove_all(folder);
 }
 

@@ -92,6 +92,38 @@ inline TriangleMesh knot(std::uint32_t along, std::uint32_t around, double tube 
   return mesh;
 }
 
+/// With the sphere's own normals at the corners.
+inline TriangleMesh icosphere_with_normals(int levels) {
+  TriangleMesh mesh = icosphere(levels);
+  mesh.normals = mesh.vertices;
+  mesh.corner_normals = mesh.triangles;
+  return mesh;
+}
+
+/// A cylinder about y of radius 1 and height 2: smooth around, with a crease at either rim.
+inline TriangleMesh cylinder_with_normals(std::uint32_t around) {
+  TriangleMesh mesh;
+  mesh.normals = {{0, -1, 0}, {0, 1, 0}};
+  for (std::uint32_t i = 0; i < around; ++i) {
+    const double phi = 2 * std::numbers::pi * i / around;
+    const Vec3 out{std::sin(phi), 0, std::cos(phi)};
+    mesh.vertices.insert(mesh.vertices.end(), {out - Vec3{0, 1, 0}, out + Vec3{0, 1, 0}});
+    mesh.normals.push_back(out);
+  }
+  const auto centers = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {{0, -1, 0}, {0, 1, 0}});
+  for (std::uint32_t i = 0; i < around; ++i) {
+    const std::uint32_t j = (i + 1) % around, a = 2 * i, b = 2 * j;
+    mesh.triangles.insert(
+        mesh.triangles.end(),
+        {{a, b, b + 1}, {a, b + 1, a + 1}, {b, a, centers}, {a + 1, b + 1, centers + 1}});
+    mesh.corner_normals.insert(
+        mesh.corner_normals.end(),
+        {{2 + i, 2 + j, 2 + j}, {2 + i, 2 + j, 2 + i}, {0, 0, 0}, {1, 1, 1}});
+  }
+  return mesh;
+}
+
 inline void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file) {
   std::ofstream out(file);
   out.precision(9);

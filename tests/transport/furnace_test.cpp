@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "renderer/scene/placed_shape.h"
+#include "renderer/shape/smooth/refine.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scenes.h"
 
@@ -24,6 +26,16 @@ struct Body {
   AnyShape shape;
   double back;
 };
+Body made(const std::string& name, const ObjectSpec& object) {
+  const PlacedShape placed = place_shape(object);
+  return {name, placed.shape, placed.back};
+}
+
+AnyShape smooth(TriangleMesh mesh) {
+  refine(mesh);
+  return build_mesh(mesh).mesh;
+}
+
 std::vector<Body> bodies() {
   return {{"sphere", Sphere{}, -1},
           {"plate", make_box({0.7, 0.6, 0.05}), -0.05},
@@ -34,7 +46,13 @@ std::vector<Body> bodies() {
           {"thin bowl", Bowl(0.98), -1},
           {"box of triangles", build_mesh(box({1, 1.5, 2})).mesh, -1},
           {"ball of triangles", build_mesh(icosphere(3)).mesh, -1},
-          {"knot", build_mesh(knot(240, 24)).mesh, -1}};
+          {"knot", build_mesh(knot(240, 24)).mesh, -1},
+          {"smooth cylinder", smooth(cylinder_with_normals(16)), -1},
+          made("torus", TorusObject{}),
+          made("rounded box", RoundedBoxObject{}),
+          made("relief", ReliefObject{}),
+          made("blob", BlobObject{}),
+          made("dragon", DragonObject{})};
 }
 
 struct Index {

@@ -1,5 +1,5 @@
-// Plates, boxes, wedges and bowls: what their rays meet, and the truths of docs/design.md section 6 in
-// them, with volumes in closed form.
+// Plates, boxes, wedges and bowls: what their rays meet, and the truths of docs/design.md section 6
+// in them, with volumes in closed form.
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/scene/placed_shape.h"
+#include "renderer/shape/body/body.h"
 #include "tests/support/meshes.h"
 #include "tests/support/truths.h"
 
@@ -32,6 +34,27 @@ std::vector<Body> bodies() {
           {"knife", make_wedge({0.6, 0.5, 0.3}, 0), 1.2 * 1.0 * 0.5 * 0.6},
           {"bowl", Bowl(0.8), shell(0.8)},
           {"thin bowl", Bowl(0.98), shell(0.98)}};
+}
+
+/// Bodies of our own that are meshes: what a request makes of them, and their volume in closed form
+/// or, where there is none, that of their triangles.
+std::vector<Body> made_bodies() {
+  const auto body_of = [](const std::string& name, const ObjectSpec& object, double volume_mm3) {
+    const PlacedShape placed = place_shape(object);
+    return Body{name, placed.shape, volume_mm3 / std::pow(placed.unit_mm, 3)};
+  };
+  return {
+      body_of("torus", TorusObject{14, 6}, 2 * pi * pi * 14 * 36),
+      body_of("thin torus", TorusObject{14, 1}, 2 * pi * pi * 14),
+      // 20 x 12 x 4 and its neighbourhood of 3.
+      body_of("rounded box", RoundedBoxObject{26, 18, 10, 3},
+              20 * 12 * 4 + 2 * 3 * (20 * 12 + 12 * 4 + 4 * 20) + 9 * pi * (20 + 12 + 4) + 36 * pi),
+      body_of("relief", ReliefObject{40, 40, 8, 0.5, 0.5, 5}, 40 * 40 * 6),
+      body_of("sine relief", ReliefObject{40, 40, 8, 0, 0.9, 9}, 40 * 40 * 4.4),
+      body_of("square relief", ReliefObject{40, 40, 8, 1, 0.5, 3}, 40 * 40 * 6),
+      body_of("blob", BlobObject{}, volume(refined(make_blob(20, 0.3, 1, 1)))),
+      body_of("sphere as a blob", BlobObject{20, 0, 1, 1}, 4 * pi / 3 * 8000),
+      body_of("dragon", DragonObject{}, volume(refined(make_dragon(44))))};
 }
 
 /// A direction out of `count` that cover the sphere evenly (Fibonacci spiral), turned by `turn`.
@@ -136,6 +159,20 @@ TEST(MeanPathLength, InPlatesBoxesWedgesAndBowlsIsThatOfTheirVolume) {
   for (const Body& which : bodies())
     for (const Material& m : {material(1.5, 0, 2), material(1.33, 0.3, 0)})
       EXPECT_NEAR(length_over_volume(which, m, 50, 8), 1, 0.05)
+          << which.name << " alpha " << m.coefficients.alpha;
+}
+
+TEST(MeanPathLength, InBodiesOfOurOwnIsThatOfTheirVolume) {
+  for (const Body& which : made_bodies())
+    for (const Material& m : {material(1.5, 0, 2), material(1.33, 0.3, 0)})
+      EXPECT_NEAR(length_over_volume(which, m, 50, 8), 1, 0.05)
+          << which.name << " alpha " << m.coefficients.alpha;
+}
+
+TEST(LongMeanPathLength, InBodiesOfOurOwnIsThatOfTheirVolumeToHalfAPercent) {
+  for (const Body& which : made_bodies())
+    for (const Material& m : {material(1.5, 0, 2), material(1.5, 0.3, 0), material(1.33, 0.2, 5)})
+      EXPECT_NEAR(length_over_volume(which, m, 400, 24), 1, 0.005)
           << which.name << " alpha " << m.coefficients.alpha;
 }
 

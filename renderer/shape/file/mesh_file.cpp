@@ -21,25 +21,38 @@ MeshFormat format_of(const std::filesystem::path& file) {
   throw MeshError("a mesh must be an .obj or .ply file");
 }
 
+template <class T>
+void read_all(AnswerReader& reader, std::vector<T>& values) {
+  const auto count = reader.value<std::uint64_t>();
+  if (count > reader.remains() / sizeof(T)) throw AnswerError("an answer of another size");
+  values.resize(count);
+  reader.values(std::span(values));
+}
+
 }  // namespace
 
 TriangleMesh unpack_mesh(std::span<const std::byte> bytes) {
   AnswerReader reader(bytes);
-  const auto vertices = reader.value<std::uint64_t>(), triangles = reader.value<std::uint64_t>();
-  if (vertices > reader.remains() / sizeof(Vec3) ||
-      triangles > reader.remains() / sizeof(Triangle) || triangles == 0)
-    throw AnswerError("an answer of another size");
   TriangleMesh mesh;
-  mesh.vertices.resize(vertices);
-  mesh.triangles.resize(triangles);
-  reader.values(std::span(mesh.vertices));
-  reader.values(std::span(mesh.triangles));
+  read_all(reader, mesh.vertices);
+  read_all(reader, mesh.triangles);
+  read_all(reader, mesh.normals);
+  read_all(reader, mesh.corner_normals);
   reader.expect_end();
-  for (const Vec3& v : mesh.vertices)
-    if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-      throw AnswerError("a vertex that is not finite");
+  if (mesh.triangles.empty()) throw AnswerError("no triangle");
+  if (!mesh.corner_normals.empty() && mesh.corner_normals.size() != mesh.triangles.size())
+    throw AnswerError("normals of other triangles");
+  for (const auto* vectors : {&mesh.vertices, &mesh.normals})
+    for (const Vec3& v : *vectors)
+      if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+        throw AnswerError("a vertex that is not finite");
   for (const Triangle& t : mesh.triangles)
-    if (std::ranges::max(t) >= vertices) throw AnswerError("a vertex that is not there");
+    if (std::ranges::max(t) >= mesh.vertices.size())
+      throw AnswerError("a vertex that is not there");
+  for (const Triangle& t : mesh.corner_normals)
+    for (const std::uint32_t n : t)
+      if (n != no_normal && n >= mesh.normals.size())
+        throw AnswerError("a normal that is not there");
   return mesh;
 }
 

@@ -112,32 +112,53 @@ void skip(const Property& property, BodyReader& body) {
   for (std::uint64_t i = 0; i < n; ++i) body.number(property.type);
 }
 
+/// What a vertex's property is of its position and normal: an index into `vertex_numbers`, or none.
+constexpr std::array<std::string_view, 6> vertex_numbers{"x", "y", "z", "nx", "ny", "nz"};
+using VertexLayout = std::vector<std::size_t>;
+
+VertexLayout vertex_layout(const Element& element, PolygonMesh& mesh) {
+  constexpr std::size_t none = vertex_numbers.size();
+  VertexLayout layout;
+  std::array<int, none> times{};
+  for (const Property& property : element.properties) {
+    const std::size_t number = static_cast<std::size_t>(
+        std::ranges::find(vertex_numbers, property.name) - vertex_numbers.begin());
+    layout.push_back(number);
+    if (number == none) continue;
+    const bool of_position = number < 3;
+    if (property.count || ++times[number] > 1)
+      throw MeshError(of_position ? "x, y and z are one number each"
+                                  : "nx, ny and nz are one number each");
+    if (of_position && property.type == Scalar::float32) mesh.rounding = 0x1p-24;
+  }
+  if (!times[0] || !times[1] || !times[2]) throw MeshError("its vertices have no x, y and z");
+  if (!times[3] || !times[4] || !times[5])
+    for (std::size_t& number : layout)
+      if (number >= 3) number = none;
+  return layout;
+}
+
 void read_vertices(const Element& element, BodyReader& body, PolygonMesh& mesh) {
-  std::array<int, 3> at{-1, -1, -1};
-  for (std::size_t i = 0; i < element.properties.size(); ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (element.properties[i].name == std::string_view("xyz").substr(axis, 1)) {
-        const Property& property = element.properties[i];
-        if (property.count || at[axis] >= 0) throw MeshError("x, y and z are one number each");
-        at[axis] = static_cast<int>(i);
-        if (property.type == Scalar::float32) mesh.rounding = 0x1p-24;
-      }
-  if (std::ranges::min(at) < 0) throw MeshError("its vertices have no x, y and z");
+  const VertexLayout layout = vertex_layout(element, mesh);
+  const bool normals = std::ranges::find(layout, 3u) != layout.end();
   mesh.vertices.reserve(element.count);
+  if (normals) mesh.normals.reserve(element.count);
   for (std::uint64_t v = 0; v < element.count; ++v) {
     body.stand_at(element, v);
-    std::array<double, 3> p{};
-    for (std::size_t i = 0; i < element.properties.size(); ++i) {
-      const auto* const axis = std::ranges::find(at, static_cast<int>(i));
-      if (axis == at.end()) {
+    std::array<double, vertex_numbers.size()> p{};
+    for (std::size_t i = 0; i < layout.size(); ++i) {
+      if (layout[i] == vertex_numbers.size()) {
         skip(element.properties[i], body);
         continue;
       }
       const double x = body.number(element.properties[i].type);
-      if (!std::isfinite(x)) body.fail_here("a coordinate that is not finite");
-      p[static_cast<std::size_t>(axis - at.begin())] = x;
+      if (layout[i] < 3 && !std::isfinite(x)) body.fail_here("a coordinate that is not finite");
+      p[layout[i]] = x;
     }
     mesh.vertices.push_back({p[0], p[1], p[2]});
+    // Programs write the normal of a vertex without a face as 0 / 0.
+    const bool finite = std::isfinite(p[3]) && std::isfinite(p[4]) && std::isfinite(p[5]);
+    if (normals) mesh.normals.push_back(finite ? unit_or_zero({p[3], p[4], p[5]}) : Vec3{});
   }
 }
 
@@ -207,6 +228,7 @@ PolygonMesh parse_ply(std::string_view bytes) {
   }
   if (!body.at_end()) throw MeshError("more bytes follow behind the last element");
   if (mesh.faces() == 0) throw MeshError("the mesh has no face");
+  if (!mesh.normals.empty()) mesh.corner_normals = mesh.corners;  // a vertex has one of its own
   return mesh;
 }
 

@@ -17,17 +17,27 @@ namespace translucube {
 /// Faces of any number of corners, in the order of a file.
 struct PolygonMesh {
   std::vector<Vec3> vertices;
-  std::vector<std::uint32_t> corners;  ///< of all faces, one after the other
-  std::vector<std::uint64_t> ends;     ///< of each face's corners
-  std::vector<std::uint32_t> places;   ///< where each face stands in the file
-  std::string_view place = "line";     ///< what `places` counts, from 1
+  std::vector<std::uint32_t> corners;         ///< of all faces, one after the other
+  std::vector<std::uint64_t> ends;            ///< of each face's corners
+  std::vector<std::uint32_t> places;          ///< where each face stands in the file
+  std::vector<Vec3> normals;                  ///< unit, or zero where the file gives no direction
+  std::vector<std::uint32_t> corner_normals;  ///< of each corner, or no_normal; empty: none at all
+  std::string_view place = "line";            ///< what `places` counts, from 1
   /// What storing a coordinate may round off, of its size: 2^-53 for numbers in double precision.
   double rounding = 0x1p-53;
 
   std::size_t faces() const { return ends.size(); }
-  std::span<const std::uint32_t> face(std::size_t i) const {
+  std::span<const std::uint32_t> face(std::size_t i) const { return of_face(corners, i); }
+  /// Of its corners; empty where the file has none.
+  std::span<const std::uint32_t> face_normals(std::size_t i) const {
+    return corner_normals.empty() ? std::span<const std::uint32_t>{} : of_face(corner_normals, i);
+  }
+
+ private:
+  std::span<const std::uint32_t> of_face(const std::vector<std::uint32_t>& all,
+                                         std::size_t i) const {
     const std::uint64_t begin = i == 0 ? 0 : ends[i - 1];
-    return {corners.data() + begin, static_cast<std::size_t>(ends[i] - begin)};
+    return {all.data() + begin, static_cast<std::size_t>(ends[i] - begin)};
   }
 };
 

@@ -145,23 +145,28 @@ TriangleMesh triangulate(const PolygonMesh& polygons) {
   check_rounding(polygons);
   TriangleMesh mesh;
   mesh.vertices = polygons.vertices;
+  mesh.normals = polygons.normals;
   std::vector<Triangle> ears;
   for (std::size_t f = 0; f < polygons.faces(); ++f) {
-    const std::span<const std::uint32_t> face = polygons.face(f);
+    const std::span<const std::uint32_t> face = polygons.face(f),
+                                         normals = polygons.face_normals(f);
+    const auto add = [&](const Triangle& t) {
+      mesh.triangles.push_back({face[t[0]], face[t[1]], face[t[2]]});
+      if (!normals.empty())
+        mesh.corner_normals.push_back({normals[t[0]], normals[t[1]], normals[t[2]]});
+    };
     std::vector<Point> points;
     if (face.size() > 3) points = project(polygons, face);
     // What has no area keeps its edges as a fan; what is convex is one anyway.
     if (points.empty() || is_convex(points)) {
-      for (std::size_t i = 1; i + 1 < face.size(); ++i)
-        mesh.triangles.push_back({face[0], face[i], face[i + 1]});
+      for (std::uint32_t i = 1; i + 1 < face.size(); ++i) add({0, i, i + 1});
       continue;
     }
     ears.clear();
     if (!EarClipper(std::move(points), ears).clip())
       throw MeshError(std::string(polygons.place) + " " + std::to_string(polygons.places[f]) +
                       ": the outline of the face crosses itself");
-    for (const Triangle& ear : ears)
-      mesh.triangles.push_back({face[ear[0]], face[ear[1]], face[ear[2]]});
+    for (const Triangle& ear : ears) add(ear);
   }
   return mesh;
 }

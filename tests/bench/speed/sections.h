@@ -22,6 +22,7 @@ Tables pixels(Run& run);
 /// has rendered nothing else.
 double film_memory(int size, int lanes, int threads);
 Tables meshes(Run& run);
+Tables bodies(Run& run);
 Tables latency(Run& run);
 Tables stopping(Run& run);
 Tables hard_sun(Run& run);
