@@ -117,18 +117,41 @@ std::optional<std::array<double, 3>> FieldReader::triple(std::string_view key, c
                                                          Presence presence) {
   const json* value = find(key, presence);
   if (!value) return std::nullopt;
-  if (!value->is_array() || value->size() != 3) {
-    fault(key, "must be an array of three numbers");
+  return triple(*value, pointer_to(key), range);
+}
+
+std::optional<std::array<double, 3>> FieldReader::triple(const json& value,
+                                                         const std::string& pointer,
+                                                         const Range& range) {
+  if (!value.is_array() || value.size() != 3) {
+    faults_.add(pointer, "must be an array of three numbers");
     return std::nullopt;
   }
   std::array<double, 3> three{};
   bool complete = true;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto element = number((*value)[i], pointer_to(key) + '/' + std::to_string(i), range);
+    const auto element = number(value[i], pointer + '/' + std::to_string(i), range);
     complete = complete && element;
     three[i] = element.value_or(0);
   }
   return complete ? std::optional(three) : std::nullopt;
+}
+
+std::optional<std::vector<std::array<double, 3>>> FieldReader::triples(
+    std::string_view key, const Range& range, std::initializer_list<std::size_t> counts) {
+  const json* value = find(key);
+  if (!value) return std::nullopt;
+  if (!value->is_array() || std::ranges::find(counts, value->size()) == counts.end()) {
+    std::vector<std::string> names;
+    for (const std::size_t count : counts) names.push_back(std::to_string(count));
+    fault(key, "must be a list of triples of numbers, as many as one of " + name_list(names));
+    return std::nullopt;
+  }
+  std::vector<std::array<double, 3>> list;
+  for (std::size_t i = 0; i < value->size(); ++i)
+    if (const auto three = triple((*value)[i], pointer_to(key) + '/' + std::to_string(i), range))
+      list.push_back(*three);
+  return list.size() == value->size() ? std::optional(list) : std::nullopt;
 }
 
 int FieldReader::exclusive(std::initializer_list<std::string_view> keys, Presence presence) {

@@ -47,6 +47,9 @@ class FieldReader {
   std::optional<std::string> string(std::string_view key, Presence presence = Presence::optional);
   std::optional<std::array<double, 3>> triple(std::string_view key, const Range& range,
                                               Presence presence = Presence::optional);
+  /// A list of triples, as many as one of `counts`.
+  std::optional<std::vector<std::array<double, 3>>> triples(
+      std::string_view key, const Range& range, std::initializer_list<std::size_t> counts);
   /// At most `most` numbers.
   std::optional<std::vector<double>> numbers(std::string_view key, const Range& range,
                                              std::size_t most);
@@ -66,6 +69,8 @@ class FieldReader {
  private:
   std::optional<double> number(const nlohmann::json& value, const std::string& pointer,
                                const Range& range);
+  std::optional<std::array<double, 3>> triple(const nlohmann::json& value,
+                                              const std::string& pointer, const Range& range);
 
   const nlohmann::json* object_;  ///< null where the value is no object
   std::string pointer_;

@@ -86,6 +86,9 @@ json environment_json(const EnvironmentRequest& environment) {
                                       },
                                       [](const ConstantEnvironment& constant) {
                                         return json{{"constant", constant.constant}};
+                                      },
+                                      [](const HarmonicsEnvironment& harmonics) {
+                                        return json{{"harmonics", harmonics.harmonics}};
                                       }},
                            environment.source);
   object["rotation_deg"] = environment.rotation_deg;
@@ -100,6 +103,45 @@ json backdrop_json(const std::optional<BackdropSpec>& backdrop) {
   for (const BackdropParameter& parameter : backdrop_parameters)
     object[parameter.name] = *backdrop.*parameter.member;
   return object;
+}
+
+json triple(Vec3 v) { return {v.x, v.y, v.z}; }
+
+json light_json(const LightSpec& light) {
+  return std::visit(Overloaded{[](const SunSpec& sun) {
+                                 return json{{"type", "sun"},
+                                             {"direction", triple(sun.direction)},
+                                             {"angular_diameter_deg", sun.angular_diameter_deg},
+                                             {"irradiance", sun.irradiance}};
+                               },
+                               [](const DiscSpec& disc) {
+                                 return json{{"type", "disc"},
+                                             {"center_mm", triple(disc.center_mm)},
+                                             {"normal", triple(disc.normal)},
+                                             {"radius_mm", disc.radius_mm},
+                                             {"radiance", disc.radiance}};
+                               },
+                               [](const RectangleSpec& rectangle) {
+                                 return json{{"type", "rectangle"},
+                                             {"center_mm", triple(rectangle.center_mm)},
+                                             {"normal", triple(rectangle.normal)},
+                                             {"up", triple(rectangle.up)},
+                                             {"width_mm", rectangle.width_mm},
+                                             {"height_mm", rectangle.height_mm},
+                                             {"radiance", rectangle.radiance}};
+                               }},
+                    light);
+}
+
+json lights_json(const std::vector<LightSpec>& lights) {
+  json list = json::array();
+  for (const LightSpec& light : lights) list.push_back(light_json(light));
+  return list;
+}
+
+json ground_json(const std::optional<GroundSpec>& ground) {
+  if (!ground) return false;
+  return {{"height_mm", ground->height_mm}, {"reflectance", ground->reflectance}};
 }
 
 json quality_json(const Quality& quality) {
@@ -123,7 +165,9 @@ std::string canonical_json(const RenderRequest& request) {
                       {"scene",
                        {{"object", object_json(request.object)},
                         {"environment", environment_json(request.environment)},
+                        {"lights", lights_json(request.lights)},
                         {"backdrop", backdrop_json(request.backdrop)},
+                        {"ground", ground_json(request.ground)},
                         {"camera",
                          {{"position_mm", camera.position_mm},
                           {"target_mm", camera.target_mm},

@@ -14,6 +14,11 @@
 
 namespace translucube::api {
 
+inline constexpr Range position_range{-1e12, 1e12};  // mm: room around the largest sphere
+// Radiance is single precision, and the error estimate squares it: factors up to 1e9 keep
+// (constant x scale)^2 finite.
+inline constexpr Range radiance_range{0, 1e9};
+
 /// A request says where in the cube its material is; the defaults must not.
 enum class MaterialPoint { required, refused };
 
@@ -34,6 +39,13 @@ void read_object(const nlohmann::json& value, const std::string& pointer, const 
 /// The value is false, or the backdrop's object.
 void read_backdrop(const nlohmann::json& value, const std::string& pointer,
                    std::optional<BackdropSpec>& out, Faults& faults);
+
+/// The value is a list of lights, or the name of a preset.
+void read_lights(const nlohmann::json& value, const std::string& pointer,
+                 std::vector<LightSpec>& out, Faults& faults);
+/// The value is false, or the ground's object.
+void read_ground(const nlohmann::json& value, const std::string& pointer,
+                 std::optional<GroundSpec>& out, Faults& faults);
 
 /// The value is the name of an absorber, or the absorber itself.
 void read_absorber(const nlohmann::json& value, const std::string& pointer, const Catalog& catalog,

@@ -10,11 +10,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Range position_range{-1e12, 1e12};  // mm: room around the largest sphere
-// Radiance is single precision, and the error estimate squares it: factors up to 1e9 keep
-// (constant x scale)^2 finite.
-constexpr Range radiance_range{0, 1e9};
-
 void read_map(const std::string& file, const std::string& pointer, const Catalog& catalog,
               EnvironmentRequest& out, Faults& faults) {
   auto path = resolve_file(file, pointer, catalog, faults);
@@ -25,7 +20,7 @@ void read_map(const std::string& file, const std::string& pointer, const Catalog
 void read_environment(const json& value, const std::string& pointer, const Catalog& catalog,
                       EnvironmentRequest& out, Faults& faults) {
   FieldReader environment(value, pointer, faults);
-  environment.exclusive({"image", "constant", "file"}, Presence::optional);
+  environment.exclusive({"image", "constant", "file", "harmonics"}, Presence::optional);
   if (auto image = environment.string("image")) {
     if (catalog.environments.contains(*image)) {
       out.source = NamedEnvironment{std::move(*image)};
@@ -40,6 +35,10 @@ void read_environment(const json& value, const std::string& pointer, const Catal
     out.source = ConstantEnvironment{*constant};
   if (const auto file = environment.string("file"))
     read_map(*file, environment.pointer_to("file"), catalog, out, faults);
+  // Harmonics go below 0 where others make up for it.
+  constexpr Range signed_range{-radiance_range.high, radiance_range.high};
+  if (auto harmonics = environment.triples("harmonics", signed_range, {1, 4, 9, 16}))
+    out.source = HarmonicsEnvironment{std::move(*harmonics)};
   if (const auto rotation = environment.number("rotation_deg", {})) out.rotation_deg = *rotation;
   if (const auto scale = environment.number("scale", radiance_range)) out.scale = *scale;
   environment.refuse_unknown_keys();
@@ -82,6 +81,11 @@ void read_scene(const json& value, const std::string& pointer, const Catalog& ca
                      faults);
   if (const json* backdrop = scene.find("backdrop"))
     read_backdrop(*backdrop, scene.pointer_to("backdrop"), out.backdrop, faults);
+  if (const json* lights = scene.find("lights"))
+    read_lights(*lights, scene.pointer_to("lights"), out.lights, faults);
+  if (const json* ground = scene.find("ground"))
+    read_ground(*ground, scene.pointer_to("ground"), out.ground, faults);
+  if (out.ground && out.backdrop) scene.fault("ground", "cannot be where there is a backdrop");
   if (const json* camera = scene.find("camera"))
     read_camera(*camera, scene.pointer_to("camera"), out.camera, faults);
   scene.refuse_unknown_keys();

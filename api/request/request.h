@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "renderer/optics/material.h"
 #include "renderer/render.h"
@@ -59,8 +60,12 @@ struct ConstantEnvironment {
   std::array<double, 3> constant{1, 1, 1};
   friend bool operator==(const ConstantEnvironment&, const ConstantEnvironment&) = default;
 };
+struct HarmonicsEnvironment {
+  std::vector<std::array<double, 3>> harmonics;  ///< 1, 4, 9 or 16
+  friend bool operator==(const HarmonicsEnvironment&, const HarmonicsEnvironment&) = default;
+};
 struct EnvironmentRequest {
-  std::variant<NamedEnvironment, FileEnvironment, ConstantEnvironment> source;
+  std::variant<NamedEnvironment, FileEnvironment, ConstantEnvironment, HarmonicsEnvironment> source;
   double rotation_deg = 0, scale = 1;
   friend bool operator==(const EnvironmentRequest&, const EnvironmentRequest&) = default;
 };
@@ -86,7 +91,9 @@ struct RenderRequest {
   MaterialRequest material;
   ObjectRequest object;
   EnvironmentRequest environment;
+  std::vector<LightSpec> lights;
   std::optional<BackdropSpec> backdrop;
+  std::optional<GroundSpec> ground;
   CameraRequest camera;
   int width = 512, height = 512;
   Quality quality;

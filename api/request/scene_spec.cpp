@@ -107,11 +107,19 @@ SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
                             },
                             [](const ConstantEnvironment& constant) -> EnvironmentSource {
                               return ConstantEnvironmentSpec{radiance(constant.constant)};
+                            },
+                            [](const HarmonicsEnvironment& harmonics) -> EnvironmentSource {
+                              HarmonicsSpec spherical;
+                              for (const auto& coefficient : harmonics.harmonics)
+                                spherical.coefficients.push_back(radiance(coefficient));
+                              return spherical;
                             }},
                  request.environment.source);
   spec.environment.rotation_deg = request.environment.rotation_deg;
   spec.environment.scale = request.environment.scale;
+  spec.lights = request.lights;
   spec.backdrop = request.backdrop;
+  spec.ground = request.ground;
   spec.camera = {vector(request.camera.position_mm), vector(request.camera.target_mm),
                  vector(request.camera.up), request.camera.vfov_deg};
   spec.width = request.width;

@@ -4,7 +4,8 @@ namespace translucube {
 
 AnyInterface make_interface(const Material& material) {
   // Without a step of the index there is no interface, however rough.
-  if (material.coefficients.alpha == 0 || material.ior == 1) return SmoothInterface{material.ior};
+  if (material.coefficients.alpha < least_alpha || material.ior == 1)
+    return SmoothInterface{material.ior};
   return RoughInterface{material.ior, Ggx{material.coefficients.alpha},
                         material.multiple_scattering};
 }

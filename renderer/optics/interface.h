@@ -27,6 +27,10 @@ struct RoughInterface {
   bool multiple_scattering = true;  ///< false only where tests compare with renderers that lose it
 };
 
+/// Slopes below this are lost in the rounding of directions in single precision, in which many rays
+/// cross together: no picture shows them.
+inline constexpr double least_alpha = 1e-6;
+
 using AnyInterface = std::variant<SmoothInterface, RoughInterface>;
 AnyInterface make_interface(const Material& material);
 

@@ -36,20 +36,24 @@ Environment make_environment(const EnvironmentSpec& spec, EnvironmentSide side,
   }
 }
 
+Rgb rgb(const std::array<double, 3>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
 /// Adds a light to those of its kind.
 class Lamps {
  public:
   Lamps(Vec3 center_mm, double unit_mm) : center_mm_(center_mm), unit_mm_(unit_mm) {}
 
   void operator()(const SunSpec& sun) {
-    suns.emplace_back(sun.direction, sun.angular_diameter_deg * radians, sun.irradiance);
+    suns.emplace_back(sun.direction, sun.angular_diameter_deg * radians, rgb(sun.irradiance));
   }
   void operator()(const DiscSpec& disc) {
     const Vec3 normal = direction_of(disc.normal);
     const Frame frame(normal);
     const double radius = disc.radius_mm / unit_mm_;
     add({AreaLight::Outline::disc, place(disc.center_mm), normal, frame.x, frame.y, radius, radius,
-         disc.radiance});
+         rgb(disc.radiance)});
   }
   void operator()(const RectangleSpec& rectangle) {
     const Vec3 normal = direction_of(rectangle.normal);
@@ -59,7 +63,7 @@ class Lamps {
     const Vec3 x = normalize(across);
     add({AreaLight::Outline::rectangle, place(rectangle.center_mm), normal, x, cross(normal, x),
          0.5 * rectangle.width_mm / unit_mm_, 0.5 * rectangle.height_mm / unit_mm_,
-         rectangle.radiance});
+         rgb(rectangle.radiance)});
   }
 
   std::vector<Sun> suns;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -98,20 +99,20 @@ struct EnvironmentSpec {
 struct SunSpec {
   Vec3 direction{0, 1, 0};  ///< towards it, of any length but 0
   double angular_diameter_deg = 0.53;
-  Rgb irradiance{1, 1, 1};  ///< on a surface that faces it
+  std::array<double, 3> irradiance{1, 1, 1};  ///< on a surface that faces it
   friend bool operator==(const SunSpec&, const SunSpec&) = default;
 };
 /// Flat lamps that shine evenly from their normal's side and hide nothing.
 struct DiscSpec {
   Vec3 center_mm{0, 100, 0}, normal{0, -1, 0};
   double radius_mm = 20;
-  Rgb radiance{1, 1, 1};
+  std::array<double, 3> radiance{1, 1, 1};
   friend bool operator==(const DiscSpec&, const DiscSpec&) = default;
 };
 struct RectangleSpec {
   Vec3 center_mm{0, 100, 0}, normal{0, -1, 0}, up{0, 0, 1};  ///< the height lies along up
   double width_mm = 40, height_mm = 40;
-  Rgb radiance{1, 1, 1};
+  std::array<double, 3> radiance{1, 1, 1};
   friend bool operator==(const RectangleSpec&, const RectangleSpec&) = default;
 };
 using LightSpec = std::variant<SunSpec, DiscSpec, RectangleSpec>;

@@ -17,7 +17,12 @@ class RequestGenerator {
     RenderRequest request = shipped_catalog().defaults;
     request.material = material();
     request.object = object();
-    if (coin()) request.backdrop = backdrop();
+    for (std::uint64_t lights = random_() % 4; lights > 0; --lights)
+      request.lights.push_back(light());
+    if (coin())
+      request.backdrop = backdrop();
+    else if (coin())
+      request.ground = GroundSpec{uniform(-1e4, 1e4), unit()};
     request.environment = {environment_source(), uniform(-1e4, 1e4), coin() ? 0 : magnitude(-9, 9)};
     if (coin())
       request.camera = {{uniform(-90, 90), uniform(-90, 90), uniform(50, 90)},
@@ -108,7 +113,27 @@ class RequestGenerator {
     }
   }
 
-  std::variant<NamedEnvironment, FileEnvironment, ConstantEnvironment> environment_source() {
+  std::array<double, 3> color() { return {magnitude(-9, 9), unit(), unit()}; }
+
+  LightSpec light() {
+    const Vec3 direction{uniform(-9, 9), 0.1 + unit(), uniform(-9, 9)};
+    switch (random_() % 3) {
+      case 0:
+        return SunSpec{direction, uniform(0.05, 180), color()};
+      case 1:
+        return DiscSpec{{uniform(-9e3, 9e3), 0, 0}, direction, magnitude(-6, 9), color()};
+      default:
+        return RectangleSpec{{0, uniform(-9e3, 9e3), 0}, direction,        {0, -1, 0},
+                             magnitude(-6, 9),           magnitude(-6, 9), color()};
+    }
+  }
+
+  decltype(EnvironmentRequest::source) environment_source() {
+    if (random_() % 4 == 0) {
+      HarmonicsEnvironment spherical;
+      spherical.harmonics.assign(coin() ? 4 : 16, {uniform(-9, 9), uniform(-9, 9), unit()});
+      return spherical;
+    }
     if (coin()) return NamedEnvironment{coin() ? "forest" : "sunrise"};
     return ConstantEnvironment{{magnitude(-9, 9), unit(), unit()}};
   }
@@ -200,6 +225,7 @@ TEST(CanonicalRequest, FillsInEveryDefaultWithSortedKeys) {
       R"("scene":{"backdrop":false,"camera":{"position_mm":[0.0,0.0,90.0],"target_mm":[0.0,0.0,0.0],)"
       R"("up":[0.0,1.0,0.0],"vfov_deg":32.0},)"
       R"("environment":{"image":"forest","rotation_deg":0.0,"scale":1.0},)"
+      R"("ground":false,"lights":[],)"
       R"("object":{"radius_mm":20.0,"type":"sphere"}},"seed":1})");
 }
 

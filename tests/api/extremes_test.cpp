@@ -53,11 +53,14 @@ class Generator {
                          {"up", triple(1)},
                          {"vfov_deg", number(32)}};
     if (rng_.bits() % 8 == 0)
-      scene["backdrop"] = {{"kind", rng_.bits() % 2 ? "print" : "light_table"},
+      scene["backdrop"] = {{"type", rng_.bits() % 2 ? "print" : "light-table"},
                            {"period_mm", number(5)},
                            {"distance_mm", number(0)},
                            {"light", number(1)},
                            {"dark", number(0)}};
+    else if (rng_.bits() % 8 == 0)
+      scene["ground"] = {{"height_mm", number(-60)}, {"reflectance", number(0.5)}};
+    if (rng_.bits() % 4 == 0) scene["lights"] = {light(), light()};
     return {{"material", material},
             {"scene", scene},
             {"image", {{"width", 3}, {"height", 2}}},
@@ -121,8 +124,30 @@ class Generator {
         return {{"type", "dragon"}, {"length_mm", number(44)}};
     }
   }
+  json light() {
+    switch (rng_.bits() % 3) {
+      case 0:
+        return {{"type", "sun"},
+                {"direction", triple(1)},
+                {"angular_diameter_deg", number(0.5)},
+                {"irradiance", triple(1)}};
+      case 1:
+        return {{"type", "disc"},
+                {"center_mm", triple(80)},
+                {"normal", triple(-1)},
+                {"radius_mm", number(10)},
+                {"radiance", triple(1)}};
+      default:
+        return {{"type", "rectangle"},     {"center_mm", triple(80)}, {"normal", triple(-1)},
+                {"up", {0, number(1), 0}}, {"width_mm", number(10)},  {"height_mm", number(10)},
+                {"radiance", triple(1)}};
+    }
+  }
   json environment() {
-    json value = rng_.bits() % 2 ? json{{"constant", triple(1)}} : json{{"image", "forest"}};
+    json value = rng_.bits() % 2 ? json{{"constant", triple(1)}}
+                 : rng_.bits() % 4
+                     ? json{{"image", "forest"}}
+                     : json{{"harmonics", {triple(1), triple(0), triple(0.1), triple(0)}}};
     maybe(value, "rotation_deg", 0);
     maybe(value, "scale", 1);
     return value;

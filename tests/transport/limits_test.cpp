@@ -70,5 +70,23 @@ TEST(Limit, BetweenNoAndSomeScatteringUnderARoughInterfaceHasNoJump) {
   expect_near(look({0, 0.3, 1e-4}), look({0, 0.3, 0}), 1e-3, "scattering");
 }
 
+TEST(Limit, OfTheLeastRoughnessIsSmooth) {
+  EXPECT_TRUE(std::holds_alternative<SmoothInterface>(make_interface(material(1.5, 1e-38, 4))));
+  EXPECT_TRUE(std::holds_alternative<SmoothInterface>(make_interface(material(1.5, 9e-7, 4))));
+  const Material m = material(1.5, least_alpha, 4);
+  ASSERT_TRUE(std::holds_alternative<RoughInterface>(make_interface(m)));
+  for (const AnyShape& shape : {AnyShape(Sphere{}), AnyShape(make_box({0.5, 0.6, 0.6}))}) {
+    Scene rough = body(shape, m), smooth = body(shape, material(1.5, 0, 4));
+    for (Scene* scene : {&rough, &smooth}) {
+      scene->environment = half_space_light(true);
+      look_from_afar(*scene, 0.9, 24);
+    }
+    const Film film = trace(rough, 64);
+    EXPECT_EQ(film.counters.nan_samples, 0u);
+    const Measured a = image_mean(film), b = image_mean(trace(smooth, 64));
+    EXPECT_NEAR(a.mean, b.mean, 4 * std::hypot(a.standard_error, b.standard_error));
+  }
+}
+
 }  // namespace
 }  // namespace translucube::test
