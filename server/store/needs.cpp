@@ -48,6 +48,17 @@ double radius_of(const api::ObjectRequest& object) {
       object);
 }
 
+/// Of bodies that are made of half a million triangles, and while these are made.
+std::uint64_t triangle_bytes(const api::ObjectRequest& object) {
+  constexpr std::uint64_t bytes = 160 << 20;
+  return std::visit(api::Overloaded{[](const TorusObject&) { return bytes; },
+                                    [](const RoundedBoxObject&) { return bytes; },
+                                    [](const BlobObject&) { return bytes; },
+                                    [](const DragonObject&) { return bytes; },
+                                    [](const auto&) { return std::uint64_t{0}; }},
+                    object);
+}
+
 /// Of an explorable film, whose densest absorber is the blackest one short of black
 /// (scene_spec.cpp), and whose scattering adds few.
 std::uint64_t bins_of(const api::RenderRequest& request) {
@@ -66,7 +77,7 @@ std::uint64_t memory_of(const api::RenderRequest& request, std::uint64_t lanes) 
   const std::uint64_t all = request.explorable ? bins_of(request) : lanes;
   const std::uint64_t films = 3 * all * rgb_bytes + 2 * rgb_bytes;  // sums, the spread, a picture
   const std::uint64_t halves = request.explorable ? all * half_rgb_bytes : 0;
-  return scene_bytes + pixels(request) * (films + halves);
+  return scene_bytes + triangle_bytes(request.object) + pixels(request) * (films + halves);
 }
 
 std::uint64_t picture_bytes(const api::RenderRequest& request, std::uint64_t lanes) {

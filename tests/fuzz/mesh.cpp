@@ -25,9 +25,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::require(mesh.corner_normals.empty() || mesh.corner_normals.size() == triangles,
                   "all corners have normals, or none");
     constexpr std::uint64_t most = 10'000;
-    constexpr double error = 1e-3;
     if (mesh.corner_normals.empty()) average_normals(mesh);
-    const Refinement done = refine(mesh, error, most);
+    const Refinement done = refine(mesh, {1e-3, 1e-3}, most);
     fuzz::require(done.made == mesh.triangles.size(), "as many triangles as are told");
     fuzz::require(done.made <= std::max<std::uint64_t>(most, triangles), "not too many");
     for (const Triangle& t : mesh.triangles)

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "renderer/shape/body/body.h"
+#include "renderer/shape/body/even_out.h"
 #include "renderer/shape/body/isosurface.h"
 #include "renderer/shape/smooth/normals.h"
 #include "renderer/shape/smooth/refine.h"
@@ -71,7 +73,8 @@ TEST(BodyMesh, OfAReliefHasTheSameVolumeHoweverSharp) {
       for (const double sharpness : {0.0, 1e-9, 0.3, 0.9, 0.999, 0.99995, 1.0}) {
         const TriangleMesh mesh = refined(make_relief({40, 30, 8}, sharpness, share, ridges));
         expect_closed(mesh);
-        EXPECT_NEAR(volume(mesh), 40 * 30 * (8 - 4 * share), 1e-6) << sharpness << " " << ridges;
+        EXPECT_NEAR(volume(mesh) / (40 * 30 * (8 - 4 * share)), 1, 1e-6)
+            << sharpness << " " << ridges;
         Vec3 low, high;
         for (const Vec3& v : mesh.vertices) {
           low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
@@ -197,6 +200,34 @@ TEST(Isosurface, OfARoundConeAndAPlateHasTheirVolume) {
   EXPECT_NEAR(
       volume(mesh) / (2 * r * 0.5 + pi / 2 * r * r * (2 + std::sqrt(2.0)) + 4 * pi / 3 * r * r * r),
       1, 1e-3);
+}
+
+TEST(Isosurface, WithoutItsShortEdgesIsTheSameBodyOfFewerTriangles) {
+  DistanceField field;
+  field.add(RoundCone{{0, 0, 0}, {0, 1, 0}, 0.5, 0.2}, 0.1);
+  const TriangleMesh whole = isosurface(field, {-0.7, -0.7, -0.7}, 0.05, {28, 40, 28});
+  TriangleMesh fewer = whole;
+  even_out(fewer, 0.045);
+  expect_closed(fewer);
+  EXPECT_LT(fewer.triangles.size(), whole.triangles.size() / 2);
+  EXPECT_EQ(fewer.vertices, whole.vertices);
+  EXPECT_EQ(fewer.corner_normals, fewer.triangles);
+  double all = 0, of_splinters = 0;
+  for (const Triangle& t : fewer.triangles) {
+    const Vec3 a = fewer.vertices[t[0]], b = fewer.vertices[t[1]], c = fewer.vertices[t[2]];
+    const double area = length(cross(b - a, c - a));
+    const bool splinter = area < 0.15 * std::max({length_squared(b - a), length_squared(c - b),
+                                                  length_squared(a - c)});
+    all += area;
+    of_splinters += splinter ? area : 0;
+  }
+  EXPECT_LT(of_splinters / all, 0.01);
+  TriangleMesh smooth = whole;
+  refine(smooth);
+  refine(fewer);
+  expect_closed(fewer);
+  EXPECT_NEAR(volume(fewer) / volume(smooth), 1, 1e-3);
+  EXPECT_NEAR(surface_area(fewer) / surface_area(smooth), 1, 1e-3);
 }
 
 TEST(Isosurface, OfTwoThatAreFarApartIsBoth) {

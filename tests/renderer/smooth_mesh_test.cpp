@@ -140,7 +140,7 @@ TEST(SmoothMesh, OfHostileNormalsIsClosedAndFinite) {
       for (std::uint32_t& n : corners) n = rng.bits() % 5 ? rng.bits() % 50 : no_normal;
       mesh.corner_normals.push_back(corners);
     }
-    const Refinement done = refine(mesh, wished_chord_error, 100'000);
+    const Refinement done = refine(mesh, {}, 100'000);
     EXPECT_LE(done.made, 100'000u);
     EXPECT_EQ(done.made, mesh.triangles.size());
     for (const Vec3& v : mesh.vertices) ASSERT_TRUE(std::isfinite(length(v)));
@@ -160,16 +160,16 @@ TEST(SmoothMesh, OfHostileNormalsIsClosedAndFinite) {
 
 TEST(SmoothMesh, HasNoMoreTrianglesThanItMayAndTellsSo) {
   TriangleMesh mesh = icosphere_with_normals(2);
-  const Refinement done = refine(mesh, wished_chord_error, 5000);
+  const Refinement done = refine(mesh, {}, 5000);
   EXPECT_TRUE(done.limited);
   EXPECT_LE(done.made, 5000u);
   EXPECT_GT(done.made, 2000u);
   EXPECT_EQ(done.made, closed_triangles(mesh));
-  EXPECT_GT(done.chord_error, wished_chord_error);
+  EXPECT_GT(done.chord_error, Fineness{}.chord_error);
   EXPECT_NEAR(volume(mesh) / sphere_volume, 1, 6 * done.chord_error);
   // What has too many already stays.
   TriangleMesh many = icosphere_with_normals(3);
-  EXPECT_EQ(refine(many, wished_chord_error, 500).made, 1280u);
+  EXPECT_EQ(refine(many, {}, 500).made, 1280u);
   EXPECT_EQ(many.triangles, icosphere(3).triangles);
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "renderer/shape/smooth/refine.h"
 #include "renderer/shape/triangle_mesh.h"
 
 namespace translucube {
@@ -13,7 +14,7 @@ namespace translucube {
 struct BodyMesh {
   TriangleMesh mesh;
   double thinnest = 0;        ///< what light must tell from the rest of the body
-  double chord_error = 2e-5;  ///< that no picture shows, in radii (smooth/refine.h)
+  Fineness wish{2e-5, 1e-3};  ///< that no picture shows
 };
 
 /// As fine as no picture shows, of at most a million triangles.

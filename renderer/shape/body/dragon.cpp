@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "renderer/shape/body/body.h"
+#include "renderer/shape/body/even_out.h"
 #include "renderer/shape/body/isosurface.h"
 
 namespace translucube {
@@ -79,9 +80,10 @@ class Dragon {
   }
 
   void add_spine() {
-    constexpr int cones = 54;
+    // They touch in common balls: to melt them would raise a ring around each.
+    constexpr int cones = 120;
     for (int i = 0; i < cones; ++i)
-      add(spine(spine_end * i / cones), spine(spine_end * (i + 1) / cones), 0.02);
+      add(spine(spine_end * i / cones), spine(spine_end * (i + 1) / cones), 0);
     // Plates across the belly and under the tail.
     for (double at = 2.6; at < 14; at += at < 9 ? 0.28 : 0.4) {
       const Ball b = spine(at);
@@ -196,7 +198,7 @@ class Dragon {
       add({middle.p, 0.018}, {tip.p + 0.06 * (tip.p - middle.p), 0.006}, 0.01);
     }
     const auto membrane = [&](const Ball& a, const Ball& b, const Ball& c) {
-      add_plate({a.p, thin}, {b.p, thin}, {c.p, thin}, 0.012);
+      add_plate({a.p, thin}, {b.p, thin}, {c.p, thin}, 0.004);
     };
     // Hung between the fingers, its rim drawn in.
     const auto bent = [&](const Ball& tip) {
@@ -246,6 +248,7 @@ TriangleMesh make_unit_dragon() {
   constexpr double cell = 0.018;
   TriangleMesh mesh = isosurface(Dragon().field(), {-1.25, -0.55, -0.75}, cell, {150, 105, 84});
   keep_largest_part(mesh);
+  even_out(mesh, 0.9 * cell);
   close_mesh(mesh);
   Vec3 least, most;
   for (const Vec3& v : mesh.vertices) {
@@ -261,7 +264,7 @@ TriangleMesh make_unit_dragon() {
 
 BodyMesh make_dragon(double length) {
   static const TriangleMesh unit = make_unit_dragon();  // takes long, and is the same for all
-  BodyMesh body{unit, 0.05 * length, 1.5e-4};
+  BodyMesh body{unit, length, {2.5e-5, 4e-3}};
   for (Vec3& v : body.mesh.vertices) v = length * v;
   return body;
 }

@@ -15,6 +15,7 @@ namespace {
 struct Edge {
   Curve curve;
   std::uint32_t parts = 1;  ///< chords
+  double counts = 1;        ///< how much of its second derivative; less where it is short
 };
 
 /// An edge as a triangle sees it.
@@ -29,8 +30,9 @@ class Refiner {
     find_edges();
   }
 
-  Refinement refine(double chord_error, std::uint64_t most) {
-    Refinement done{mesh_.triangles.size(), 0, chord_error, false};
+  Refinement refine(const Fineness& wish, std::uint64_t most) {
+    Refinement done{mesh_.triangles.size(), 0, wish.chord_error, false};
+    least_side_ = wish.least_side * radius_;
     while ((done.made = divide(done.chord_error * radius_)) > std::max(most, done.given)) {
       done.limited = true;
       constexpr double coarser = 1.25;
@@ -79,7 +81,13 @@ class Refiner {
 
   /// Divides the edges so that no chord is further off; how many triangles that makes.
   std::uint64_t divide(double error) {
-    for (Edge& edge : edges_) edge.parts = parts_of(edge.curve.most_bend(), error);
+    for (Edge& edge : edges_) {
+      const auto& p = edge.curve.points;
+      const double bend = edge.curve.most_bend();
+      const double most = std::ceil(length(p[3] - p[0]) / least_side_);
+      edge.counts = std::fmin(1, 8 * error * most * most / bend);
+      edge.parts = parts_of(edge.counts * bend, error);
+    }
     std::uint64_t made = 0;
     for (const auto& sides : sides_) {
       const auto parts = [&](int i) { return edges_[sides[i].edge].parts; };
@@ -89,8 +97,11 @@ class Refiner {
   }
 
   Three<Vec3> bends(const Three<Side>& sides) const {
-    return {edges_[sides[0].edge].curve.bend(), edges_[sides[1].edge].curve.bend(),
-            edges_[sides[2].edge].curve.bend()};
+    const auto bend = [&](std::size_t i) {
+      const Edge& edge = edges_[sides[i].edge];
+      return edge.counts * edge.curve.bend();
+    };
+    return {bend(0), bend(1), bend(2)};
   }
 
   void tessellate(double error, std::uint64_t made) {
@@ -120,7 +131,7 @@ class Refiner {
   }
 
   TriangleMesh& mesh_;
-  double radius_;
+  double radius_, least_side_ = 0;
   std::vector<Edge> edges_;
   std::vector<Three<Side>> sides_;
 };
@@ -136,8 +147,8 @@ double bounding_radius(const TriangleMesh& mesh) {
   return 0.5 * length(high - low);
 }
 
-Refinement refine(TriangleMesh& mesh, double chord_error, std::uint64_t most_triangles) {
-  return Refiner(mesh).refine(chord_error, most_triangles);
+Refinement refine(TriangleMesh& mesh, const Fineness& wish, std::uint64_t most_triangles) {
+  return Refiner(mesh).refine(wish, most_triangles);
 }
 
 std::optional<Refinement> make_smooth(TriangleMesh& mesh, std::optional<bool> smooth) {

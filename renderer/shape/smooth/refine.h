@@ -15,20 +15,23 @@ namespace translucube {
 struct Refinement {
   std::uint64_t given = 0;  ///< triangles
   std::uint64_t made = 0;   ///< triangles in their place
-  double chord_error = 0;   ///< of their sides from the curved ones, at most, in radii of the mesh
+  double chord_error = 0;   ///< of their sides from the curved ones, in radii of the mesh
   bool limited = false;     ///< the error is larger than wished, or there would be too many
   friend bool operator==(const Refinement&, const Refinement&) = default;
 };
 
-/// The wish: in a picture of a thousand pixels a hundredth of one.
-inline constexpr double wished_chord_error = 1e-5;
+/// How fine it should get, in radii of the mesh: as no picture of a thousand pixels shows.
+struct Fineness {
+  double chord_error = 1e-5;  ///< a hundredth of a pixel
+  double least_side = 1e-3;   ///< what is shorter is not divided, however it bends: half a pixel
+};
 inline constexpr std::uint64_t most_refined_triangles = 2'000'000;
 
 /// Replaces the triangles of a closed mesh by those of curved PN triangles (Vlachos, Peters, Boyd,
 /// Mitchell 2001) over them, of the normals at their corners (normals.h), which are used up. Where
 /// the two triangles of an edge have different normals, the edge stays a crease. The mesh stays
 /// closed, as both triangles of an edge have the same points on it; flat parts stay as they are.
-Refinement refine(TriangleMesh& mesh, double chord_error = wished_chord_error,
+Refinement refine(TriangleMesh& mesh, const Fineness& wish = {},
                   std::uint64_t most_triangles = most_refined_triangles);
 /// Half the diagonal of the bounding box: the radius that chord errors are told in.
 double bounding_radius(const TriangleMesh& mesh);
