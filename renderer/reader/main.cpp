@@ -38,11 +38,11 @@ void load_codecs(std::span<const char> bytes) {
   }
 }
 
-void read_mesh(MeshFormat format, std::span<const char> bytes, const Answer& answer) {
-  const TriangleMesh mesh = parse_mesh(format, {bytes.data(), bytes.size()});
+void read_mesh(std::span<const char> bytes, const Answer& answer) {
+  const auto [mesh, report] = parse_mesh({bytes.data(), bytes.size()});
   const std::uint64_t vertices = mesh.vertices.size(), triangles = mesh.triangles.size();
-  answer({bytes_of(vertices), bytes_of(triangles), std::as_bytes(std::span(mesh.vertices)),
-          std::as_bytes(std::span(mesh.triangles))});
+  answer({bytes_of(vertices), bytes_of(triangles), bytes_of(report),
+          std::as_bytes(std::span(mesh.vertices)), std::as_bytes(std::span(mesh.triangles))});
 }
 
 }  // namespace
@@ -50,10 +50,6 @@ void read_mesh(MeshFormat format, std::span<const char> bytes, const Answer& ans
 int main(int count, char** words) {
   const std::string_view kind = count == 2 ? words[1] : "";
   if (kind == "light") return run_confined(load_codecs, read_light);
-  for (const MeshFormat format : {MeshFormat::obj, MeshFormat::ply})
-    if (kind == sandbox_kind(format))
-      return run_confined(
-          [](auto) {},
-          [format](auto bytes, const Answer& answer) { read_mesh(format, bytes, answer); });
+  if (kind == mesh_kind) return run_confined([](auto) {}, read_mesh);
   return sandbox_no_answer;
 }

@@ -17,17 +17,18 @@ struct PlacedShape {
   Vec3 center_mm;
   double unit_mm;
   double back;  ///< least z, in units
+  std::optional<MeshReport> mesh = {};
 };
 
 PlacedShape make_shape(const SphereObject& sphere) { return {Sphere{}, {}, sphere.radius_mm, -1}; }
 
 PlacedShape make_shape(const MeshObject& object) {
   try {
-    const TriangleMesh mesh = read_mesh(object.file);
+    const auto [mesh, report] = read_mesh(object.file);
     const BuiltMesh built = build_mesh(mesh);
     const double back =
         std::ranges::min(mesh.vertices, {}, [](Vec3 v) { return v.z; }).z - built.center.z;
-    return {built.mesh, built.center, built.radius, back / built.radius};
+    return {built.mesh, built.center, built.radius, back / built.radius, report};
   } catch (const MeshUnavailable& error) {
     throw SceneError(SceneError::Part::object, error.what(), true);
   } catch (const MeshError& error) {
@@ -166,6 +167,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   scene->seed = spec.seed;
   scene->unit_mm = unit;
   scene->shape = placed.shape;
+  scene->mesh = placed.mesh;
   scene->interface = make_interface(spec.material);
   if (const auto& film = spec.material.oil_film)
     scene->oiled =

@@ -38,6 +38,7 @@ struct Scene {
   std::uint64_t seed = 0;
   double unit_mm = 1;  ///< the body's unit of length
   AnyShape shape;
+  std::optional<MeshReport> mesh;  ///< of a shape that was read from a file
   AnyInterface interface;
   std::optional<OiledPart> oiled;  ///< of a rough interface
   AnyInterior interior;

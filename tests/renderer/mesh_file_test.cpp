@@ -37,8 +37,8 @@ std::string obj_box(Vec3 low, Vec3 high, int first = 1, bool flipped = false) {
   return text.str();
 }
 
-TriangleMesh obj(const std::string& text) { return parse_mesh(MeshFormat::obj, text); }
-TriangleMesh ply(const std::string& text) { return parse_mesh(MeshFormat::ply, text); }
+TriangleMesh obj(const std::string& text) { return parse_mesh(MeshFormat::obj, text).mesh; }
+TriangleMesh ply(const std::string& text) { return parse_mesh(MeshFormat::ply, text).mesh; }
 
 std::string refusal(MeshFormat format, const std::string& text) {
   try {
@@ -383,13 +383,16 @@ TEST(MeshAnswer, IsBelievedInNothing) {
     };
     add(std::span(&vertices, 1));
     add(std::span(&triangles, 1));
+    const MeshReport report{8, 12, 1, 2, 3};
+    add(std::span(&report, 1));
     add(std::span(m.vertices));
     add(std::span(m.triangles));
     std::vector<std::byte> bytes(text.size());
     std::memcpy(bytes.data(), text.data(), text.size());
     return bytes;
   };
-  EXPECT_EQ(unpack_mesh(packed(8, 12, mesh)).triangles.size(), 12u);
+  EXPECT_EQ(unpack_mesh(packed(8, 12, mesh)).mesh.triangles.size(), 12u);
+  EXPECT_EQ(unpack_mesh(packed(8, 12, mesh)).report, (MeshReport{8, 12, 1, 2, 3}));
   for (const auto& [v, t] :
        {std::pair(7u, 12u), {8u, 11u}, {9u, 12u}, {8u, 13u}, {0u, 12u}, {8u, 0u}})
     EXPECT_THROW(unpack_mesh(packed(v, t, mesh)), AnswerError) << v << " " << t;

@@ -1,7 +1,6 @@
 #include "renderer/shape/file/mesh_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string>
 
@@ -10,26 +9,16 @@
 #include "renderer/shape/file/mesh_format.h"
 
 namespace translucube {
-namespace {
 
-MeshFormat format_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return std::tolower(c); });
-  if (extension == ".obj") return MeshFormat::obj;
-  if (extension == ".ply") return MeshFormat::ply;
-  throw MeshError("a mesh must be an .obj or .ply file");
-}
-
-}  // namespace
-
-TriangleMesh unpack_mesh(std::span<const std::byte> bytes) {
+ClosedMesh unpack_mesh(std::span<const std::byte> bytes) {
   AnswerReader reader(bytes);
   const auto vertices = reader.value<std::uint64_t>(), triangles = reader.value<std::uint64_t>();
   if (vertices > reader.remains() / sizeof(Vec3) ||
       triangles > reader.remains() / sizeof(Triangle) || triangles == 0)
     throw AnswerError("an answer of another size");
-  TriangleMesh mesh;
+  ClosedMesh closed;
+  closed.report = reader.value<MeshReport>();
+  TriangleMesh& mesh = closed.mesh;
   mesh.vertices.resize(vertices);
   mesh.triangles.resize(triangles);
   reader.values(std::span(mesh.vertices));
@@ -40,13 +29,12 @@ TriangleMesh unpack_mesh(std::span<const std::byte> bytes) {
       throw AnswerError("a vertex that is not finite");
   for (const Triangle& t : mesh.triangles)
     if (std::ranges::max(t) >= vertices) throw AnswerError("a vertex that is not there");
-  return mesh;
+  return closed;
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& file) {
-  const std::string kind = sandbox_kind(format_of(file));
+ClosedMesh read_mesh(const std::filesystem::path& file) {
   try {
-    const SandboxAnswer answer = read_in_sandbox(kind, file);
+    const SandboxAnswer answer = read_in_sandbox(mesh_kind, file);
     return unpack_mesh(open_answer(answer.bytes()));
   } catch (const FileRefused& error) {
     throw MeshError(error.what());
