@@ -16,6 +16,15 @@ void append(std::string& object, const char* key, const std::optional<std::strin
   object.insert(object.size() - 1, std::string(",\"") + key + "\":" + text.value_or("null"));
 }
 
+json mesh_object(const std::optional<MeshReport>& mesh) {
+  if (!mesh) return nullptr;
+  return {{"vertices", mesh->vertices},
+          {"triangles", mesh->triangles},
+          {"welded_vertices", mesh->welded_vertices},
+          {"dropped_triangles", mesh->dropped_triangles},
+          {"parts", mesh->parts}};
+}
+
 }  // namespace
 
 std::string to_json(const RenderStatus& status) {
@@ -49,7 +58,8 @@ std::string render_list_json(const std::vector<RenderStatus>& renders,
 }
 
 std::string stats_json(const RenderStats& stats) {
-  return json{{"samples", stats.samples},
+  return json{{"mesh", mesh_object(stats.mesh)},
+              {"samples", stats.samples},
               {"seconds", finite_or_null(stats.seconds)},
               {"cpu_seconds", finite_or_null(stats.cpu_seconds)},
               {"threads", stats.threads},

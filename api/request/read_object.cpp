@@ -60,12 +60,14 @@ void read_lengths(FieldReader& reader, ObjectRequest& out, const Faults& faults)
 }
 
 void read_mesh(FieldReader& reader, const Catalog& catalog, ObjectRequest& out, Faults& faults) {
-  const auto file = reader.string("file", Presence::required);
-  if (!file) return;
-  const std::string where = reader.pointer_to("file");
-  auto path = resolve_file(*file, where, catalog, faults);
-  if (!path) return;
-  if (check_file(check_mesh, *path, where, catalog, faults)) out = MeshRequest{std::move(*path)};
+  if (reader.exclusive({"file", "upload"}, Presence::required) != 1) return;
+  const auto file = reader.string("file"), upload = reader.string("upload");
+  const std::string at_file = reader.pointer_to("file"), at_upload = reader.pointer_to("upload");
+  if (upload && check_upload(UploadKind::mesh, *upload, at_upload, catalog, faults))
+    out = MeshRequest{{}, *upload};
+  auto path = file ? resolve_file(*file, at_file, catalog, faults) : std::nullopt;
+  if (path && check_file(check_mesh, *path, at_file, catalog, faults))
+    out = MeshRequest{std::move(*path), {}};
 }
 
 std::string type_of(const ObjectRequest& request) {

@@ -25,7 +25,7 @@ void read_map(const std::string& file, const std::string& pointer, const Catalog
 void read_environment(const json& value, const std::string& pointer, const Catalog& catalog,
                       EnvironmentRequest& out, Faults& faults) {
   FieldReader environment(value, pointer, faults);
-  environment.exclusive({"image", "constant", "file"}, Presence::optional);
+  environment.exclusive({"image", "constant", "file", "upload"}, Presence::optional);
   if (auto image = environment.string("image")) {
     if (catalog.environments.contains(*image)) {
       out.source = NamedEnvironment{std::move(*image)};
@@ -40,6 +40,10 @@ void read_environment(const json& value, const std::string& pointer, const Catal
     out.source = ConstantEnvironment{*constant};
   if (const auto file = environment.string("file"))
     read_map(*file, environment.pointer_to("file"), catalog, out, faults);
+  if (auto upload = environment.string("upload"))
+    if (check_upload(UploadKind::environment, *upload, environment.pointer_to("upload"), catalog,
+                     faults))
+      out.source = UploadedEnvironment{std::move(*upload)};
   if (const auto rotation = environment.number("rotation_deg", {})) out.rotation_deg = *rotation;
   if (const auto scale = environment.number("scale", radiance_range)) out.scale = *scale;
   environment.refuse_unknown_keys();

@@ -108,7 +108,7 @@ class RequestGenerator {
     }
   }
 
-  std::variant<NamedEnvironment, FileEnvironment, ConstantEnvironment> environment_source() {
+  decltype(EnvironmentRequest::source) environment_source() {
     if (coin()) return NamedEnvironment{coin() ? "forest" : "sunrise"};
     return ConstantEnvironment{{magnitude(-9, 9), unit(), unit()}};
   }
