@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "renderer/shape/bounding_box.h"
+#include "renderer/shape/oriented_box.h"
 #include "renderer/shape/triangle_pair.h"
 
 namespace translucube {
@@ -31,6 +32,9 @@ BoundingBox box_of_arc(Vec3 u, Vec3 v) {
   return box;
 }
 
+/// Larger nodes have no oriented box: it takes a look at all their triangles, and tells little.
+constexpr std::uint32_t most_oriented = 4096;
+
 /// A binary tree of boxes over the triangles. Those of a hub are a tree of their own: against
 /// others by their boxes, against each other by the boxes of their directions from the hub.
 class Search {
@@ -46,6 +50,7 @@ class Search {
       const std::uint32_t hub = hubs[order_[begin]];
       while (end < order_.size() && hubs[order_[end]] == hub) ++end;
       roots_.push_back({build(begin, end), hub});
+      orient(roots_.back().node);
     }
   }
 
@@ -66,6 +71,7 @@ class Search {
     BoundingBox box;
     std::uint32_t begin = 0, end = 0;         ///< in `order_`
     std::uint32_t left = none, right = none;  ///< none: a leaf
+    std::optional<OrientedBox> oriented{};
     bool is_leaf() const { return left == none; }
   };
   struct Root {
@@ -113,6 +119,20 @@ class Search {
     return index;
   }
 
+  /// All nodes from one on, where they are not too large.
+  void orient(std::uint32_t index) {
+    Node& node = nodes_[index];
+    if (node.end - node.begin <= most_oriented) {
+      std::vector<Corners> triangles;
+      triangles.reserve(node.end - node.begin);
+      for (std::uint32_t i = node.begin; i < node.end; ++i) triangles.push_back(corners(order_[i]));
+      node.oriented = OrientedBox::around(triangles);
+    }
+    if (node.is_leaf()) return;
+    orient(node.left);
+    orient(node.right);
+  }
+
   std::uint32_t tree_of_directions(std::uint32_t hub, std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i) {
       const Triangle& t = mesh_.triangles[order_[i]];
@@ -138,6 +158,7 @@ class Search {
   bool between(std::uint32_t first, std::uint32_t second) {
     const Node &a = nodes_[first], &b = nodes_[second];
     if (!a.box.meets(b.box)) return false;
+    if (a.oriented && b.oriented && a.oriented->apart(*b.oriented)) return false;
     if (a.is_leaf() && b.is_leaf()) {
       for (std::uint32_t i = a.begin; i < a.end; ++i)
         for (std::uint32_t j = b.begin; j < b.end; ++j)

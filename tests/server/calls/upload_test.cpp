@@ -185,6 +185,23 @@ TEST_F(UploadCalls, AreWhatRequestsName) {
   EXPECT_EQ(post(request(name_of(tetrahedron), name_of(tetrahedron))).status, 422);
 }
 
+TEST_F(UploadCalls, ThatAreLostAreWaitedFor) {
+  std::atomic<bool> go_on = false;
+  live.renderer.before_pass = [&](const Pass&) {
+    while (!go_on) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  live.caller.send("POST", "/v1/renders", {}, small_request(4, 7));
+  put(tetrahedron);
+  json render = json::parse(small_request(4));
+  render["scene"]["object"] = {{"type", "mesh"}, {"upload", name_of(tetrahedron)}};
+  const std::string id = live.caller.send("POST", "/v1/renders", {}, render.dump()).value()["id"];
+  fs::remove(live.service.data.uploads() / "meshes" / name_of(tetrahedron));
+  go_on = true;
+  EXPECT_TRUE(eventually([&] { return live.service.service.figures().set_back == 1; }));
+  EXPECT_EQ(put(tetrahedron).status, 201);
+  EXPECT_EQ(live.service.wait(id).state, api::JobState::succeeded);
+}
+
 struct FewUploads : UploadCalls {
   // Each counts 64 KiB.
   FewUploads() : UploadCalls(options()) {}
