@@ -13,8 +13,6 @@ using api::ProblemCode;
 using api::Result;
 using api::UploadKind;
 
-constexpr std::int64_t day_ms = 86'400'000;
-
 api::UploadReport report_of(const Upload& upload) {
   return {upload.sha256, upload.bytes, rfc3339(upload.uploaded_ms)};
 }
