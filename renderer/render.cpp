@@ -160,6 +160,8 @@ RenderStats stats_of(const Scene& scene, const Film& film, double seconds, int t
   stats.relative_error = relative_error(film);
   stats.transport = transport_name(scene);
   stats.camera_inside = scene.camera_inside;
+  stats.mesh = scene.mesh;
+  stats.refinement = scene.refinement;
   stats.nan_samples = film.counters.nan_samples;
   stats.truncated_energy =
       film.counters.camera_samples > 0

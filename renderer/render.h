@@ -19,6 +19,8 @@
 #include "renderer/film/film.h"
 #include "renderer/film/length_bins.h"
 #include "renderer/scene/spec.h"
+#include "renderer/shape/smooth/refine.h"
+#include "renderer/shape/triangle_mesh.h"
 
 namespace translucube {
 
@@ -79,8 +81,10 @@ struct RenderStats {
   std::string transport;
   int traced_images = 1;
   std::uint64_t nan_samples = 0;
-  double truncated_energy = 0;  ///< mean per camera sample
-  bool camera_inside = false;   ///< the camera is in the body
+  double truncated_energy = 0;     ///< mean per camera sample
+  bool camera_inside = false;      ///< the camera is in the body
+  std::optional<MeshReport> mesh;        ///< what became of the file of a mesh
+  std::optional<Refinement> refinement;  ///< and then, where it was made smooth
 };
 
 struct RenderResult {

@@ -69,7 +69,7 @@ expect_bad(renderer/film/bad.cpp "\n\n[;]\n#include \"renderer/scene/scene.h\"\n
 expect_bad(renderer/transport/bad.inl "#include \"renderer/render.h\"\n" "renderer/transport/bad.inl:1: renderer/transport/ may")
 expect_bad(renderer/attic/bad.h "#include <cmath>\n" "renderer/attic/bad.h: renderer/attic/ is no room")
 expect_bad(picture/bad.cpp "#include <nlohmann/json.hpp>\n" "picture/bad.cpp:1: picture/ may not")
-expect_bad(renderer/base/bad.h "#include <nlohmann/json.hpp>\n" "renderer/base/bad.h:1: renderer/ may not")
+expect_bad(renderer/base/bad.h "#include <nlohmann/json.hpp>\n" "renderer/base/bad.h:1: only")
 expect_bad(renderer/base/bad.h "#include <sqlite3.h>\n" "renderer/base/bad.h:1: renderer/ may not")
 expect_bad(api/base/bad.cpp "\n#include \"server/worker/worker.h\"\n" "api/base/bad.cpp:2: api/base/ may not include server")
 expect_bad(api/base/bad.cpp "\t#include <httplib.h>\n" "api/base/bad.cpp:1: api/ may not include httplib.h")

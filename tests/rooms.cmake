@@ -15,6 +15,7 @@ set(rooms
   "renderer/shape/file: renderer/shape renderer/base picture/sandbox"
   "renderer/shape/smooth: renderer/shape renderer/base"
   "renderer/shape/body: renderer/shape renderer/shape/smooth renderer/base"
+  "renderer/shape/file/gltf: renderer/shape renderer/base renderer/shape/file"
   "renderer/reader: renderer/shape/file picture picture/light picture/oiio picture/sandbox"
   "renderer/light: renderer/base picture"
   "renderer/optics: renderer/base renderer/light"
@@ -25,7 +26,7 @@ set(rooms
   "renderer/transport/boundary: renderer/base renderer/shape renderer/light renderer/optics renderer/film renderer/scene renderer/transport"
   "renderer/transport/instances: renderer/transport"
   "renderer/slab: renderer/base renderer/optics renderer/film"
-  "renderer: renderer/base renderer/film renderer/scene renderer/transport"
+  "renderer: renderer/base renderer/shape renderer/shape/smooth renderer/film renderer/scene renderer/transport"
 
   "api/base:"
   "api/request: api/base renderer renderer/optics renderer/scene"
@@ -46,12 +47,13 @@ set(rooms
 # What the headers named by a regular expression may not be included by, in a whole layer.
 set(layers picture renderer api server)
 set(forbidden_picture "^(nlohmann|spdlog|CLI)/|^httplib\\.h$|^sqlite3\\.h$|^(openssl|prometheus|hwy|embree[0-9]*|Eigen)/")
-set(forbidden_renderer "^(nlohmann|spdlog|CLI)/|^httplib\\.h$|^sqlite3\\.h$|^(openssl|prometheus)/|^(OpenImageIO|OpenColorIO|OpenEXR|Imath)/")
+set(forbidden_renderer "^(spdlog|CLI)/|^httplib\\.h$|^sqlite3\\.h$|^(openssl|prometheus)/|^(OpenImageIO|OpenColorIO|OpenEXR|Imath)/")
 set(forbidden_api "^(spdlog|CLI)/|^httplib\\.h$|^sqlite3\\.h$|^(openssl|prometheus|hwy|Eigen)/|^(embree[0-9]*|OpenImageIO|OpenColorIO|OpenEXR|Imath)/")
 set(forbidden_server "^httplib\\.h$|^(embree[0-9]*|OpenImageIO|OpenColorIO|OpenEXR|Imath|hwy|Eigen)/")
 
 # Doors: the header, and the file that may include it, or the files of that name (a regular expression).
-set(doors Embree OpenEXR OpenImageIO OpenColorIO LittleCMS seccomp FreeType SQLite OpenSSL prometheus)
+set(doors Embree OpenEXR OpenImageIO OpenColorIO LittleCMS seccomp FreeType SQLite OpenSSL prometheus
+  JSON)
 set(header_Embree "^embree[0-9]*/")
 set(header_OpenEXR "^(OpenEXR|Imath)/|^picture/exr/file\\.h$")
 set(header_OpenImageIO "^OpenImageIO/|^picture/oiio/file\\.h$")
@@ -62,6 +64,7 @@ set(header_FreeType "^ft2build\\.h$|^freetype/")
 set(header_SQLite "^sqlite3\\.h$")
 set(header_OpenSSL "^openssl/")
 set(header_prometheus "^prometheus/")
+set(header_JSON "^nlohmann/")
 set(door_Embree "renderer/shape/embree_mesh.cpp")
 set(door_OpenEXR "picture/exr/[a-z_]+.(cpp|h)")
 set(door_OpenImageIO "picture/oiio/[a-z_]+.(cpp|h)")
@@ -72,3 +75,5 @@ set(door_FreeType "picture/sheet/text.cpp")
 set(door_SQLite "server/store/sqlite/connection.cpp")
 set(door_OpenSSL "server/(base/sha256|calls/tokens).cpp")
 set(door_prometheus "server/base/metrics.cpp")
+# The renderer knows JSON as a part of a format of meshes alone.
+set(door_JSON "(api|server)/[a-z_0-9/]+.(cpp|h)|renderer/shape/file/gltf/[a-z_]+.(cpp|h)")

@@ -89,6 +89,16 @@ json object_json(const RenderRequest& defaults) {
           {"parameters", std::move(parameters)}};
 }
 
+json upload_json(const UploadReport& upload) {
+  return {{"sha256", upload.sha256}, {"bytes", upload.bytes}, {"uploaded_at", upload.uploaded_at}};
+}
+
+json uploads_json(const std::vector<UploadReport>& uploads) {
+  json list = json::array();
+  for (const UploadReport& upload : uploads) list.push_back(upload_json(upload));
+  return list;
+}
+
 }  // namespace
 
 std::string absorbers_json(const Catalog& catalog) {
@@ -101,29 +111,40 @@ std::string absorbers_json(const Catalog& catalog) {
   return json{{"absorbers", std::move(list)}}.dump();
 }
 
-std::string environments_json(const Catalog& catalog) {
+std::string to_json(const UploadReport& upload) { return upload_json(upload).dump(); }
+
+std::string environments_json(const Catalog& catalog, const std::vector<UploadReport>& uploads) {
   json list = json::array();
   for (const auto& [name, file] : catalog.environments) list.push_back({{"name", name}});
-  return json{{"environments", std::move(list)}}.dump();
+  return json{{"environments", std::move(list)}, {"uploads", uploads_json(uploads)}}.dump();
+}
+
+std::string meshes_json(const std::vector<UploadReport>& uploads) {
+  return json{{"meshes", uploads_json(uploads)}}.dump();
 }
 
 std::string objects_json(const Catalog& catalog) {
   json list = json::array();
   for_each_object_kind(
       [&]<class Object>() { list.push_back(object_json<Object>(catalog.defaults)); });
-  list.push_back({{"name", "mesh"},
-                  {"description", "A closed triangle mesh."},
-                  {"parameters",
-                   {{{"name", "file"},
-                     {"type", "string"},
-                     {"description",
-                      "OBJ or PLY in millimetres, in a folder that the service's configuration "
-                      "allows (none by default)."}},
-                    {{"name", "smooth"},
-                     {"type", "boolean"},
-                     {"description",
-                      "Whether its triangles stand for a curved surface. Not given: if the file "
-                      "has normals that say so."}}}}});
+  list.push_back(
+      {{"name", "mesh"},
+       {"description", "A closed triangle mesh."},
+       {"parameters",
+        {{{"name", "file"},
+          {"type", "string"},
+          {"description",
+           "OBJ, PLY or STL in millimetres, in a folder that the service's "
+           "configuration allows (none by default); or an upload."}},
+         {{"name", "upload"},
+          {"type", "string"},
+          {"description",
+           "SHA-256 of a mesh that was sent to PUT /v1/meshes/{sha256}; or a file."}},
+         {{"name", "smooth"},
+          {"type", "boolean"},
+          {"description",
+           "Whether its triangles stand for a curved surface. Not given: if the file has normals "
+           "that say so."}}}}});
   return json{{"objects", std::move(list)},
               {"backdrop", backdrop_part(catalog.defaults)},
               {"oil_film", oil_film_part(catalog.defaults)}}

@@ -13,8 +13,19 @@ namespace translucube::api {
 /// GET /v1/absorbers: {"absorbers": [{"name", "description", "wavelengths_nm", "values"}]}.
 std::string absorbers_json(const Catalog& catalog);
 
-/// GET /v1/environments: {"environments": [{"name"}]}.
-std::string environments_json(const Catalog& catalog);
+/// What is told of an upload: {"sha256", "bytes", "uploaded_at"}.
+struct UploadReport {
+  std::string sha256;
+  std::uint64_t bytes = 0;
+  std::string uploaded_at;  ///< RFC 3339
+};
+std::string to_json(const UploadReport& upload);
+
+/// GET /v1/environments: {"environments": [{"name"}], "uploads": [upload...]}.
+std::string environments_json(const Catalog& catalog, const std::vector<UploadReport>& uploads);
+
+/// GET /v1/meshes: {"meshes": [upload...]}.
+std::string meshes_json(const std::vector<UploadReport>& uploads);
 
 /// GET /v1/objects: {"objects": [part...], "backdrop": part, "oil_film": part}, each part {"name",
 /// "description", "parameters": [{"name", "type", "description", and what bounds it}]}: enough to

@@ -16,6 +16,24 @@ void append(std::string& object, const char* key, const std::optional<std::strin
   object.insert(object.size() - 1, std::string(",\"") + key + "\":" + text.value_or("null"));
 }
 
+json refinement_object(const std::optional<Refinement>& refinement) {
+  if (!refinement) return nullptr;
+  return {{"triangles", refinement->made},
+          {"chord_error", finite_or_null(refinement->chord_error)},
+          {"limited", refinement->limited}};
+}
+
+json mesh_object(const RenderStats& stats) {
+  const std::optional<MeshReport>& mesh = stats.mesh;
+  if (!mesh) return nullptr;
+  return {{"vertices", mesh->vertices},
+          {"triangles", mesh->triangles},
+          {"welded_vertices", mesh->welded_vertices},
+          {"dropped_triangles", mesh->dropped_triangles},
+          {"parts", mesh->parts},
+          {"smooth", refinement_object(stats.refinement)}};
+}
+
 }  // namespace
 
 std::string to_json(const RenderStatus& status) {
@@ -49,7 +67,8 @@ std::string render_list_json(const std::vector<RenderStatus>& renders,
 }
 
 std::string stats_json(const RenderStats& stats) {
-  return json{{"samples", stats.samples},
+  return json{{"mesh", mesh_object(stats)},
+              {"samples", stats.samples},
               {"seconds", finite_or_null(stats.seconds)},
               {"cpu_seconds", finite_or_null(stats.cpu_seconds)},
               {"threads", stats.threads},

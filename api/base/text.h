@@ -37,4 +37,9 @@ inline std::string lower_case(std::string_view text) {
   return lower;
 }
 
+/// A SHA-256 in hexadecimal: 64 digits, in lower case.
+inline bool is_sha256(std::string_view text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == text.npos;
+}
+
 }  // namespace translucube::api

@@ -62,7 +62,11 @@ json material_json(const MaterialRequest& material) {
 
 json object_json(const ObjectRequest& object) {
   return std::visit(Overloaded{[](const MeshRequest& mesh) {
-                                 json values{{"type", "mesh"}, {"file", mesh.file}};
+                                 json values{{"type", "mesh"}};
+                                 if (mesh.upload.empty())
+                                   values["file"] = mesh.file;
+                                 else
+                                   values["upload"] = mesh.upload;
                                  if (mesh.smooth) values["smooth"] = *mesh.smooth;
                                  return values;
                                },
@@ -83,6 +87,9 @@ json environment_json(const EnvironmentRequest& environment) {
                                       },
                                       [](const FileEnvironment& file) {
                                         return json{{"file", file.file}};
+                                      },
+                                      [](const UploadedEnvironment& uploaded) {
+                                        return json{{"upload", uploaded.upload}};
                                       },
                                       [](const ConstantEnvironment& constant) {
                                         return json{{"constant", constant.constant}};

@@ -60,6 +60,8 @@ Limits read_limits(const json& value, const std::string& pointer, Faults& faults
   FieldReader object(value, pointer, faults);
   if (const auto bytes = object.integer("body_bytes", 1024, std::uint64_t{1} << 30))
     limits.body_bytes = *bytes;
+  if (const auto bytes = object.integer("upload_bytes", 1024, std::uint64_t{1} << 31))
+    limits.upload_bytes = *bytes;
   if (const auto pixels = object.integer("pixels", 1, std::uint64_t{1} << 32))
     limits.pixels = *pixels;
   if (const auto samples = object.integer("samples", 1, std::numeric_limits<std::uint32_t>::max()))
@@ -157,7 +159,7 @@ Catalog without_limits(Catalog catalog) {
   constexpr double any = std::numeric_limits<double>::infinity();
   constexpr auto most = std::numeric_limits<std::uint32_t>::max();
   constexpr auto most_bytes = std::numeric_limits<std::uint64_t>::max();
-  catalog.limits = {most_bytes, most_bytes, most, any, any, most};
+  catalog.limits = {most_bytes, most_bytes, most, any, most_bytes, any, most};
   catalog.knows_files = true;
   return catalog;
 }

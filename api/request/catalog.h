@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct Limits {
   std::uint64_t pixels = 1 << 24;  ///< width x height
   std::uint32_t samples = 1 << 20;
   double seconds = 3600;
+  std::uint64_t upload_bytes = 256 << 20;  ///< of one
   double camera_samples = 1e12;   ///< pixels x samples of a render, times the images of a sweep
   std::uint32_t points = 20'000;  ///< of a sweep
 };
@@ -36,7 +38,9 @@ struct Catalog {
   std::map<std::string, std::filesystem::path> environments;
   std::filesystem::path display_config;             ///< OpenColorIO config
   std::vector<std::filesystem::path> file_folders;  ///< from which requests may name files
-  bool any_file = false;                            ///< the command line: any path
+  std::optional<std::filesystem::path>
+      uploads;               ///< their folder (upload.h); only a service has one
+  bool any_file = false;     ///< the command line: any path
   bool knows_files = false;  ///< what is in the files that requests name was looked at before
 };
 

@@ -97,14 +97,16 @@ void read_numbers(FieldReader& reader, ObjectRequest& out, const Faults& faults)
 }
 
 void read_mesh(FieldReader& reader, const Catalog& catalog, ObjectRequest& out, Faults& faults) {
-  const auto file = reader.string("file", Presence::required);
   const auto smooth = reader.boolean("smooth");
-  if (!file) return;
-  const std::string where = reader.pointer_to("file");
-  auto path = resolve_file(*file, where, catalog, faults);
-  if (!path) return;
+  if (reader.exclusive({"file", "upload"}, Presence::required) != 1) return;
+  const auto file = reader.string("file"), upload = reader.string("upload");
+  const std::string at_file = reader.pointer_to("file"), at_upload = reader.pointer_to("upload");
   const auto check = [&](const std::string& name) { check_mesh({name, smooth}); };
-  if (check_file(check, *path, where, catalog, faults)) out = MeshRequest{std::move(*path), smooth};
+  if (upload && check_upload(UploadKind::mesh, *upload, at_upload, catalog, faults))
+    out = MeshRequest{{}, *upload, smooth};
+  auto path = file ? resolve_file(*file, at_file, catalog, faults) : std::nullopt;
+  if (path && check_file(check, *path, at_file, catalog, faults))
+    out = MeshRequest{std::move(*path), {}, smooth};
 }
 
 std::string type_of(const ObjectRequest& request) {

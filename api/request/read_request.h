@@ -11,6 +11,7 @@
 #include "api/base/field_reader.h"
 #include "api/request/catalog.h"
 #include "api/request/request.h"
+#include "api/request/upload.h"
 
 namespace translucube::api {
 
@@ -58,6 +59,10 @@ std::optional<SpectralAbsorber> read_spectrum(FieldReader& object);
 /// is a regular file. Outside the catalog's folders the fault is the same whether it exists or not.
 std::optional<std::string> resolve_file(const std::string& file, const std::string& pointer,
                                         const Catalog& catalog, Faults& faults);
+
+/// Whether there is an upload of this name.
+bool check_upload(UploadKind kind, const std::string& sha256, const std::string& pointer,
+                  const Catalog& catalog, Faults& faults);
 
 /// Whether such a file is what it has to be, by the renderer's check, unless the catalog knows it
 /// already; what it cannot tell now counts as right.

@@ -20,7 +20,7 @@ void read_map(const std::string& file, const std::string& pointer, const Catalog
 void read_environment(const json& value, const std::string& pointer, const Catalog& catalog,
                       EnvironmentRequest& out, Faults& faults) {
   FieldReader environment(value, pointer, faults);
-  environment.exclusive({"image", "constant", "file", "harmonics"}, Presence::optional);
+  environment.exclusive({"image", "constant", "harmonics", "file", "upload"}, Presence::optional);
   if (auto image = environment.string("image")) {
     if (catalog.environments.contains(*image)) {
       out.source = NamedEnvironment{std::move(*image)};
@@ -39,6 +39,10 @@ void read_environment(const json& value, const std::string& pointer, const Catal
   constexpr Range signed_range{-radiance_range.high, radiance_range.high};
   if (auto harmonics = environment.triples("harmonics", signed_range, {1, 4, 9, 16}))
     out.source = HarmonicsEnvironment{std::move(*harmonics)};
+  if (auto upload = environment.string("upload"))
+    if (check_upload(UploadKind::environment, *upload, environment.pointer_to("upload"), catalog,
+                     faults))
+      out.source = UploadedEnvironment{std::move(*upload)};
   if (const auto rotation = environment.number("rotation_deg", {})) out.rotation_deg = *rotation;
   if (const auto scale = environment.number("scale", radiance_range)) out.scale = *scale;
   environment.refuse_unknown_keys();

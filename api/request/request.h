@@ -56,6 +56,10 @@ struct FileEnvironment {
   std::string file;
   friend bool operator==(const FileEnvironment&, const FileEnvironment&) = default;
 };
+struct UploadedEnvironment {
+  std::string upload;  ///< SHA-256 of its bytes (upload.h)
+  friend bool operator==(const UploadedEnvironment&, const UploadedEnvironment&) = default;
+};
 struct ConstantEnvironment {
   std::array<double, 3> constant{1, 1, 1};
   friend bool operator==(const ConstantEnvironment&, const ConstantEnvironment&) = default;
@@ -65,13 +69,16 @@ struct HarmonicsEnvironment {
   friend bool operator==(const HarmonicsEnvironment&, const HarmonicsEnvironment&) = default;
 };
 struct EnvironmentRequest {
-  std::variant<NamedEnvironment, FileEnvironment, ConstantEnvironment, HarmonicsEnvironment> source;
+  std::variant<NamedEnvironment, FileEnvironment, UploadedEnvironment, ConstantEnvironment,
+               HarmonicsEnvironment>
+      source;
   double rotation_deg = 0, scale = 1;
   friend bool operator==(const EnvironmentRequest&, const EnvironmentRequest&) = default;
 };
 
+/// Of a file, or of an upload.
 struct MeshRequest {
-  std::string file;
+  std::string file, upload;         ///< one of them: a path, or the SHA-256 of its bytes (upload.h)
   std::optional<bool> smooth = {};  ///< not given: as its normals say
   friend bool operator==(const MeshRequest&, const MeshRequest&) = default;
 };

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "api/base/text.h"
 #include "api/request/read_request.h"
 #include "renderer/scene/spec.h"
 
@@ -75,6 +76,21 @@ std::optional<std::string> resolve_file(const std::string& file, const std::stri
                                   [&](const fs::path& place) { return fs::exists(place, error); });
   faults.add(pointer, exists ? "is not a regular file" : "there is no such file");
   return std::nullopt;
+}
+
+bool check_upload(UploadKind kind, const std::string& sha256, const std::string& pointer,
+                  const Catalog& catalog, Faults& faults) {
+  std::error_code error;
+  if (!is_sha256(sha256))
+    faults.add(pointer, "must be a SHA-256: 64 hexadecimal digits in lower case");
+  else if (!catalog.uploads)
+    faults.add(pointer, "only a service has uploads; name a file");
+  else if (!fs::is_regular_file(upload_file(*catalog.uploads, kind, sha256), error))
+    faults.add(pointer, std::string("there is no such upload; PUT it to /v1/") +
+                            collection_of(kind) + "/ and this name first");
+  else
+    return true;
+  return false;
 }
 
 bool check_file(const std::function<void(const std::string&)>& check, const std::string& file,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "api/base/overloaded.h"
+#include "api/request/upload.h"
 #include "renderer/optics/material_cube.h"
 
 namespace translucube::api {
@@ -92,8 +93,8 @@ SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
   SceneSpec spec;
   spec.material = material_of(request.material, catalog);
   spec.model = light_model(request, spec.material);
-  spec.object = std::visit(Overloaded{[](const MeshRequest& mesh) -> ObjectSpec {
-                                        return MeshObject{mesh.file, mesh.smooth};
+  spec.object = std::visit(Overloaded{[&](const MeshRequest& mesh) -> ObjectSpec {
+                                        return MeshObject{file_of(mesh, catalog), mesh.smooth};
                                       },
                                       [](const auto& object) -> ObjectSpec { return object; }},
                            request.object);
@@ -104,6 +105,9 @@ SceneSpec scene_spec(const RenderRequest& request, const Catalog& catalog) {
                             },
                             [](const FileEnvironment& file) -> EnvironmentSource {
                               return ImageEnvironmentSpec{file.file};
+                            },
+                            [&](const UploadedEnvironment& uploaded) -> EnvironmentSource {
+                              return ImageEnvironmentSpec{file_of(uploaded, catalog)};
                             },
                             [](const ConstantEnvironment& constant) -> EnvironmentSource {
                               return ConstantEnvironmentSpec{radiance(constant.constant)};

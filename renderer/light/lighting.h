@@ -45,7 +45,7 @@ class Lighting {
   Lighting() = default;
   Lighting(UniformEnvironment environment) : Lighting(Environment(environment)) {}
   Lighting(ImageEnvironment environment) : Lighting(Environment(std::move(environment))) {}
-  explicit Lighting(Environment environment, std::vector<Sun> suns = {},
+  Lighting(Environment environment, std::vector<Sun> suns = {},
                     std::vector<AreaLight> area_lights = {},
                     EnvironmentSide side = EnvironmentSide::all);
 

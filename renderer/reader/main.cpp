@@ -39,12 +39,12 @@ void load_codecs(std::span<const char> bytes) {
   }
 }
 
-void read_mesh(MeshFormat format, std::span<const char> bytes, const Answer& answer) {
-  const TriangleMesh mesh = parse_mesh(format, {bytes.data(), bytes.size()});
+void read_mesh(std::span<const char> bytes, const Answer& answer) {
+  const auto [mesh, report] = parse_mesh({bytes.data(), bytes.size()});
   const std::array<std::uint64_t, 4> counts{mesh.vertices.size(), mesh.triangles.size(),
                                             mesh.normals.size(), mesh.corner_normals.size()};
-  answer({bytes_of(counts[0]), std::as_bytes(std::span(mesh.vertices)), bytes_of(counts[1]),
-          std::as_bytes(std::span(mesh.triangles)), bytes_of(counts[2]),
+  answer({bytes_of(report), bytes_of(counts[0]), std::as_bytes(std::span(mesh.vertices)),
+          bytes_of(counts[1]), std::as_bytes(std::span(mesh.triangles)), bytes_of(counts[2]),
           std::as_bytes(std::span(mesh.normals)), bytes_of(counts[3]),
           std::as_bytes(std::span(mesh.corner_normals))});
 }
@@ -54,10 +54,6 @@ void read_mesh(MeshFormat format, std::span<const char> bytes, const Answer& ans
 int main(int count, char** words) {
   const std::string_view kind = count == 2 ? words[1] : "";
   if (kind == "light") return run_confined(load_codecs, read_light);
-  for (const MeshFormat format : {MeshFormat::obj, MeshFormat::ply})
-    if (kind == sandbox_kind(format))
-      return run_confined(
-          [](auto) {},
-          [format](auto bytes, const Answer& answer) { read_mesh(format, bytes, answer); });
+  if (kind == mesh_kind) return run_confined([](auto) {}, read_mesh);
   return sandbox_no_answer;
 }

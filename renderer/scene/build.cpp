@@ -118,6 +118,7 @@ std::shared_ptr<const Scene> build_scene(const SceneSpec& spec, EnvironmentCache
   scene->unit_mm = unit;
   scene->shape = placed.shape;
   scene->refinement = placed.refinement;
+  scene->mesh = placed.mesh;
   scene->interface = make_interface(spec.material);
   if (const auto& film = spec.material.oil_film)
     scene->oiled =

@@ -11,7 +11,7 @@ namespace translucube {
 namespace {
 
 PlacedShape make_shape(const SphereObject& sphere) {
-  return {Sphere{}, {}, sphere.radius_mm, -1, -1, {}};
+  return {Sphere{}, {}, sphere.radius_mm, -1, -1};
 }
 
 PlacedShape place(const TriangleMesh& mesh, const std::optional<Refinement>& refinement) {
@@ -36,9 +36,11 @@ auto reading_mesh(Read&& read) {
 
 PlacedShape make_shape(const MeshObject& object) {
   return reading_mesh([&] {
-    TriangleMesh mesh = read_mesh(object.file);
+    auto [mesh, report] = read_mesh(object.file);
     const auto refinement = make_smooth(mesh, object.smooth);
-    return place(mesh, refinement);
+    PlacedShape placed = place(mesh, refinement);
+    placed.mesh = report;
+    return placed;
   });
 }
 
@@ -72,7 +74,7 @@ PlacedShape make_shape(const WedgeObject& wedge) {
 
 PlacedShape make_shape(const BowlObject& bowl) {
   const double inner = 1 - bowl.thickness_mm / bowl.radius_mm;
-  return {Bowl(inner), {0, 0.5 * bowl.radius_mm, 0}, bowl.radius_mm, -1, -1, {}};
+  return {Bowl(inner), {0, 0.5 * bowl.radius_mm, 0}, bowl.radius_mm, -1, -1};
 }
 
 BodyMesh make_body(const TorusObject& torus) { return make_torus(torus.major_mm, torus.minor_mm); }
@@ -122,7 +124,7 @@ PlacedShape place_shape(const ObjectSpec& object) {
 
 void check_mesh(const MeshObject& object) {
   reading_mesh([&] {
-    TriangleMesh mesh = read_mesh(object.file);
+    TriangleMesh mesh = read_mesh(object.file).mesh;
     make_smooth(mesh, object.smooth);
   });
 }

@@ -13,7 +13,8 @@ struct PlacedShape {
   double unit_mm;
   double back;    ///< least z, in units
   double bottom;  ///< least y
-  std::optional<Refinement> refinement;
+  std::optional<Refinement> refinement = {};
+  std::optional<MeshReport> mesh = {};
 };
 
 /// Reads or makes the object. Throws SceneError.

@@ -39,6 +39,7 @@ struct Scene {
   std::uint64_t seed = 0;
   double unit_mm = 1;  ///< the body's unit of length
   AnyShape shape;
+  std::optional<MeshReport> mesh;        ///< of a shape that was read from a file
   std::optional<Refinement> refinement;  ///< of a mesh that was made smooth
   AnyInterface interface;
   std::optional<OiledPart> oiled;  ///< of a rough interface

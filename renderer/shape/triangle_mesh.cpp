@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <numbers>
+#include <numeric>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -18,25 +19,52 @@ Vec3 area_vector(const TriangleMesh& mesh, const Triangle& t) {
   return 0.5 * cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a);
 }
 
-/// Files repeat a vertex for each face or normal: a closed surface shares them.
-void merge_vertices(TriangleMesh& mesh) {
-  const auto less = [](Vec3 a, Vec3 b) {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-  };
-  std::map<Vec3, std::uint32_t, decltype(less)> index(less);
-  std::vector<Vec3> unique;
-  std::vector<std::uint32_t> target(mesh.vertices.size());
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const auto [entry, fresh] = index.try_emplace(mesh.vertices[i], unique.size());
-    if (fresh) unique.push_back(mesh.vertices[i]);
-    target[i] = entry->second;
-  }
-  mesh.vertices = std::move(unique);
+/// Names each vertex by `target`, and keeps the first of those that have the same name.
+void rename_vertices(TriangleMesh& mesh, const std::vector<std::uint32_t>& target,
+                     std::size_t count) {
+  std::vector<Vec3> kept(count);
+  for (std::size_t i = mesh.vertices.size(); i-- > 0;)
+    if (target[i] < count) kept[target[i]] = mesh.vertices[i];
+  mesh.vertices = std::move(kept);
   for (Triangle& t : mesh.triangles)
     for (std::uint32_t& v : t) v = target[v];
 }
 
-void drop_degenerate(TriangleMesh& mesh) {
+/// Files repeat a vertex for each face or normal: a closed surface shares them. Exactly equal ones:
+/// a tolerance would close what is open, and change what is fine.
+std::size_t weld_vertices(TriangleMesh& mesh) {
+  const auto count = static_cast<std::uint32_t>(mesh.vertices.size());
+  const auto place = [&](std::uint32_t i) {
+    const Vec3& v = mesh.vertices[i];
+    return std::tie(v.x, v.y, v.z);
+  };
+  std::vector<std::uint32_t> order(count), first(count), target(count);
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, [&](std::uint32_t i, std::uint32_t j) {
+    return place(i) != place(j) ? place(i) < place(j) : i < j;
+  });
+  for (std::uint32_t i = 0; i < count; ++i)
+    first[order[i]] =
+        i > 0 && place(order[i]) == place(order[i - 1]) ? first[order[i - 1]] : order[i];
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < count; ++i) target[i] = first[i] == i ? kept++ : target[first[i]];
+  rename_vertices(mesh, target, kept);
+  return count - kept;
+}
+
+/// What is no corner must not be part of the bounding box either.
+void drop_unused_vertices(TriangleMesh& mesh) {
+  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> target(mesh.vertices.size(), unused);
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) target[v] = 0;
+  std::uint32_t kept = 0;
+  for (std::uint32_t& v : target)
+    if (v != unused) v = kept++;
+  rename_vertices(mesh, target, kept);
+}
+
+std::size_t drop_degenerate(TriangleMesh& mesh) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle t = mesh.triangles[i];
@@ -45,8 +73,10 @@ void drop_degenerate(TriangleMesh& mesh) {
     if (!mesh.corner_normals.empty()) mesh.corner_normals[kept] = mesh.corner_normals[i];
     ++kept;
   }
+  const std::size_t dropped = mesh.triangles.size() - kept;
   mesh.triangles.resize(kept);
   if (!mesh.corner_normals.empty()) mesh.corner_normals.resize(kept);
+  return dropped;
 }
 
 void check_closed(const TriangleMesh& mesh) {
@@ -80,15 +110,20 @@ void check_closed(const TriangleMesh& mesh) {
 
 }  // namespace
 
-void close_mesh(TriangleMesh& mesh) {
+MeshReport close_mesh(TriangleMesh& mesh) {
   for (const Vec3& v : mesh.vertices)
     if (!std::isfinite(v.x + v.y + v.z))
       throw MeshError("the mesh has a vertex that is not finite");
-  merge_vertices(mesh);
-  drop_degenerate(mesh);
+  MeshReport report;
+  report.welded_vertices = weld_vertices(mesh);
+  report.dropped_triangles = drop_degenerate(mesh);
   if (mesh.triangles.empty()) throw MeshError("the mesh has no triangle");
   check_closed(mesh);
-  unite_parts(mesh);
+  report.parts = unite_parts(mesh);
+  drop_unused_vertices(mesh);
+  report.vertices = mesh.vertices.size();
+  report.triangles = mesh.triangles.size();
+  return report;
 }
 
 double volume(const TriangleMesh& mesh) {

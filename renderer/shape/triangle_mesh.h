@@ -27,10 +27,26 @@ struct TriangleMesh {
 /// Of a corner: its normal is that of its triangle.
 inline constexpr std::uint32_t no_normal = std::numeric_limits<std::uint32_t>::max();
 
-/// Merges equal vertices, drops triangles without area, and unites the parts to the boundary of one
-/// body, seen from outside (mesh_parts.h). Throws MeshError if it is empty, not finite, or not
-/// closed: every edge must be shared by two triangles that run along it in opposite directions.
-void close_mesh(TriangleMesh& mesh);
+/// What became of a mesh that was closed.
+struct MeshReport {
+  std::uint64_t vertices = 0, triangles = 0;  ///< of the boundary
+  std::uint64_t welded_vertices = 0;          ///< of those that were equal to others, all but one
+  std::uint64_t dropped_triangles = 0;        ///< those with two corners in one place
+  std::uint64_t parts = 0;                    ///< closed ones, before they were one body
+  friend bool operator==(const MeshReport&, const MeshReport&) = default;
+};
+
+/// Merges equal vertices, drops triangles with two corners in one place, and unites the parts to
+/// the boundary of one body, seen from outside (mesh_parts.h). Vertices that are not of it go.
+/// Throws MeshError if it is empty, not finite, or not closed: every edge must be shared by two
+/// triangles that run along it in opposite directions, and no two of them may cross.
+MeshReport close_mesh(TriangleMesh& mesh);
+
+/// A mesh as it was read, and what was done to close it.
+struct ClosedMesh {
+  TriangleMesh mesh;
+  MeshReport report;
+};
 
 /// Signed volume (divergence theorem); > 0 if the normals point outward.
 double volume(const TriangleMesh& mesh);

@@ -8,6 +8,8 @@
 
 namespace translucube::server {
 
+inline constexpr std::int64_t day_ms = 86'400'000;
+
 /// Milliseconds since 1970, UTC. Injected where tests turn the clock.
 using Clock = std::function<std::int64_t()>;
 

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t for_the_process = 48;
 constexpr std::size_t for_each_worker = 4;   // checkpoints and films
 constexpr std::size_t for_each_request = 1;  // the file that is sent or made
+constexpr std::size_t for_each_upload = 4;   // the file, and what has it read
 constexpr std::size_t fewest_connections = 8;
 
 }  // namespace
@@ -33,6 +34,7 @@ void fit_descriptors(ServerConfig& config, std::size_t limit) {
   const auto wanted = static_cast<std::size_t>(config.connections);
   const std::size_t others =
       for_the_process + for_each_worker * static_cast<std::size_t>(config.workers) +
+      for_each_upload * static_cast<std::size_t>(config.uploads) +
       for_each_request * static_cast<std::size_t>(config.http_threads + config.transfers);
   const std::size_t left = limit > others ? limit - others : 0;
   // Of what is left, connections come before files that are held open to save a look-up.

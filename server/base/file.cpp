@@ -16,25 +16,15 @@ namespace {
 
 constexpr std::string_view temporary_prefix = ".tmp-";
 
-[[noreturn]] void fail(const std::filesystem::path& path, const char* doing, int error) {
-  throw FileError(std::string("cannot ") + doing + ' ' + path.string() + ": " +
-                  std::strerror(error));
-}
-
 void sync(const std::filesystem::path& path, int flags) {
   const FileDescriptor fd(::open(path.c_str(), flags | O_CLOEXEC));
   if (!fd || ::fsync(fd.get()) != 0) fail(path, "make durable", errno);
 }
 
-void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
+void write_file(const std::filesystem::path& path, std::string_view bytes) {
   const FileDescriptor fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
   if (!fd) fail(path, "create", errno);
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(fd.get(), bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) fail(path, "write", written < 0 ? errno : ENOSPC);
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
+  write_bytes(fd, path, bytes);
 }
 
 std::string version_of(const struct stat& status) {
@@ -54,6 +44,23 @@ struct Removal {
 };
 
 }  // namespace
+
+void fail(const std::filesystem::path& path, const char* doing, int error) {
+  throw FileError(std::string("cannot ") + doing + ' ' + path.string() + ": " +
+                  std::strerror(error));
+}
+
+void write_bytes(const FileDescriptor& file, const std::filesystem::path& path,
+                 std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) fail(path, "write", written < 0 ? errno : ENOSPC);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void sync_folder(const std::filesystem::path& folder) { sync(folder, O_RDONLY | O_DIRECTORY); }
 
 FileDescriptor::~FileDescriptor() {
   if (fd_ >= 0) ::close(fd_);
@@ -129,8 +136,7 @@ std::filesystem::path write_atomically_named(
     const std::filesystem::path& folder, const std::string& extension,
     const std::function<void(const std::filesystem::path&)>& writer,
     const std::function<std::filesystem::path(const OpenFile&)>& name) {
-  const std::filesystem::path temporary =
-      folder / (std::string(temporary_prefix) + random_hex(8) + extension);
+  const std::filesystem::path temporary = temporary_path(folder, extension);
   const Removal removal{temporary};
   writer(temporary);
   sync(temporary, O_RDONLY);
@@ -138,7 +144,7 @@ std::filesystem::path write_atomically_named(
   if (!written) fail(temporary, "read", ENOENT);
   std::filesystem::path path = name(*written);
   if (::rename(temporary.c_str(), path.c_str()) != 0) fail(path, "name", errno);
-  sync(folder, O_RDONLY | O_DIRECTORY);
+  sync_folder(folder);
   return path;
 }
 
@@ -150,14 +156,19 @@ void write_atomically(const std::filesystem::path& path,
 
 void make_folder(const std::filesystem::path& folder) {
   if (::mkdir(folder.c_str(), 0700) == 0)
-    sync(folder.parent_path(), O_RDONLY | O_DIRECTORY);
+    sync_folder(folder.parent_path());
   else if (errno != EEXIST)
     fail(folder, "create", errno);
 }
 
 void write_atomically(const std::filesystem::path& path, std::string_view bytes) {
   write_atomically(path,
-                   [&](const std::filesystem::path& temporary) { write_bytes(temporary, bytes); });
+                   [&](const std::filesystem::path& temporary) { write_file(temporary, bytes); });
+}
+
+std::filesystem::path temporary_path(const std::filesystem::path& folder,
+                                     const std::string& extension) {
+  return folder / (std::string(temporary_prefix) + random_hex(8) + extension);
 }
 
 bool is_temporary_name(const std::string& filename) {

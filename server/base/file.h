@@ -84,7 +84,15 @@ void make_folder(const std::filesystem::path& folder);
 /// Writes bytes that are at hand, likewise.
 void write_atomically(const std::filesystem::path& path, std::string_view bytes);
 
-/// True for the names that write_atomically uses on the way.
+/// A name that write_atomically uses on the way, and whether one is.
+std::filesystem::path temporary_path(const std::filesystem::path& folder,
+                                     const std::string& extension = {});
 bool is_temporary_name(const std::string& filename);
+
+// The steps of it. Each throws FileError.
+[[noreturn]] void fail(const std::filesystem::path& path, const char* doing, int error);
+void write_bytes(const FileDescriptor& file, const std::filesystem::path& path,
+                 std::string_view bytes);
+void sync_folder(const std::filesystem::path& folder);
 
 }  // namespace translucube::server

@@ -155,6 +155,8 @@ struct Metrics::Impl {
         "What all files take on the disk that artifact_bytes bounds: pictures, what is derived "
         "of them, sheets of sweeps, films of renders under way.",
         static_cast<double>(store.artifact_bytes));
+    add_gauge(all, "translucube_upload_bytes", "What uploads take of upload_quota_bytes.",
+              static_cast<double>(store.upload_bytes));
     add_gauge(all, "translucube_unknown_folders",
               "Folders of files that the job store did not know at the start, left as they are.",
               static_cast<double>(store.unknown_folders));

@@ -18,6 +18,7 @@ struct StoreGauges {
   double oldest_queued_age_s = 0;                        ///< 0 where none waits
   std::uint64_t results = 0, result_bytes = 0;           ///< finished pictures that are kept
   std::uint64_t artifact_bytes = 0;                      ///< all files: films and sheets too
+  std::uint64_t upload_bytes = 0;                        ///< as the quota counts them
   std::uint64_t unknown_folders = 0, unknown_bytes = 0;  ///< that the store does not know
   std::uint64_t damaged_files = 0;                       ///< found since the start
   std::uint64_t set_back = 0;                            ///< renders that wait for the world

@@ -66,6 +66,7 @@ ServerConfig read_server_config(api::ConfigFile& file) {
   integer("http_threads", 1, 1024, server.http_threads);
   integer("event_streams", 1, 4096, server.event_streams);
   integer("waiting_requests", 1, 4096, server.waiting_requests);
+  integer("uploads", 1, 1024, server.uploads);
   integer("transfers", 1, 4096, server.transfers);
   integer("connections", 1, 100'000, server.connections);
   integer("header_timeout_s", 1, 3600, server.header_timeout_s);
@@ -79,6 +80,8 @@ ServerConfig read_server_config(api::ConfigFile& file) {
     server.interactive_seconds = *seconds;
   if (const auto bytes = object.integer("artifact_bytes", 1 << 20, std::uint64_t{1} << 60))
     server.artifact_bytes = *bytes;
+  if (const auto bytes = object.integer("upload_quota_bytes", 1 << 20, std::uint64_t{1} << 60))
+    server.upload_quota_bytes = *bytes;
   integer("keep_days", 1, 36'500, server.keep_days);
   if (const auto bytes = object.integer("memory_bytes", 0, std::uint64_t{1} << 60))
     server.memory_bytes = *bytes;

@@ -30,6 +30,7 @@ struct ServerConfig {
   int http_threads = 16;      ///< for requests that are answered at once
   int event_streams = 64;     ///< at once, a thread each
   int waiting_requests = 32;  ///< at once, of `Prefer: wait` and `?wait=`, a thread each
+  int uploads = 4;            ///< that come or are read at once, a thread each
   int transfers = 32;         ///< clients slower than their upload or download, a thread each
   int connections = 512;      ///< open at once; those between requests hold no thread
   int header_timeout_s = 10;
@@ -44,7 +45,9 @@ struct ServerConfig {
   double interactive_seconds = 10;  ///< a render that is traced for longer waits with the sweeps
   std::uint64_t artifact_bytes = std::uint64_t{20} << 30;  ///< of finished pictures on the disk
 
-  int keep_days = 365;  ///< renders and sweeps that have ended, and their pictures
+  std::uint64_t upload_quota_bytes = std::uint64_t{4} << 30;  ///< of all uploads on the disk
+
+  int keep_days = 365;  ///< renders and sweeps that have ended, their pictures, unused uploads
 
   std::uint64_t memory_bytes = 0;  ///< of renders; 0: three quarters of what there is
   std::uint64_t explorable_memory_bytes = std::uint64_t{256} << 20;  ///< of films kept in memory

@@ -12,20 +12,23 @@
 #include "server/base/server_config.h"
 #include "server/http/message.h"
 #include "server/service/job_service.h"
+#include "server/service/uploads.h"
 
 namespace translucube::server {
 
 /// What the calls work with.
 struct CallContext {
-  CallContext(JobService& the_service, const api::Catalog& the_catalog,
+  CallContext(JobService& the_service, Uploads& the_uploads, const api::Catalog& the_catalog,
               const ColorConfig& the_colors, const ServerConfig& config)
       : service(the_service),
+        uploads(the_uploads),
         catalog(the_catalog),
         colors(the_colors),
         waiting(config.waiting_requests),
         streams(config.event_streams) {}
 
   JobService& service;
+  Uploads& uploads;
   const api::Catalog& catalog;
   const ColorConfig& colors;
   /// Each request that waits and each event stream holds a thread: without a place, a wait is not
@@ -33,16 +36,17 @@ struct CallContext {
   Places waiting, streams;
 };
 
-/// What stands in a path in the places of "{id}", "{point}" and "{file}".
+/// What stands in a path in the places of "{id}", "{point}", "{file}" and "{sha256}".
 struct PathParameters {
-  std::string id, point, file;
+  std::string id, point, file, sha256;
 
   /// Where a segment of a pattern goes; nullptr where it stands for itself.
   std::string* place(std::string_view segment) {
-    return segment == "{id}"      ? &id
-           : segment == "{point}" ? &point
-           : segment == "{file}"  ? &file
-                                  : nullptr;
+    return segment == "{id}"       ? &id
+           : segment == "{point}"  ? &point
+           : segment == "{file}"   ? &file
+           : segment == "{sha256}" ? &sha256
+                                   : nullptr;
   }
 };
 
@@ -59,6 +63,12 @@ HttpResponse list_sweeps(CallContext&, const HttpRequest&, const PathParameters&
 HttpResponse get_sweep(CallContext&, const HttpRequest&, const PathParameters&);
 HttpResponse cancel_sweep(CallContext&, const HttpRequest&, const PathParameters&);
 HttpResponse delete_sweep(CallContext&, const HttpRequest&, const PathParameters&);
+
+// upload_calls.cpp: a body goes to the disk as it comes.
+std::optional<HttpResponse> receive_upload(CallContext&, HttpRequest&, const PathParameters&);
+HttpResponse put_mesh(CallContext&, const HttpRequest&, const PathParameters&);
+HttpResponse put_environment(CallContext&, const HttpRequest&, const PathParameters&);
+HttpResponse get_meshes(CallContext&, const HttpRequest&, const PathParameters&);
 
 // image_calls.cpp: negotiated, tagged, whole or in part.
 HttpResponse get_image(CallContext&, const HttpRequest&, const PathParameters&);

@@ -29,8 +29,11 @@ std::string_view route_of(std::string_view path) {
   return pattern.empty() ? "other" : pattern;
 }
 
-Front::Front(AccessPolicy policy, Metrics& metrics, Respond respond)
-    : policy_(std::move(policy)), metrics_(metrics), respond_(std::move(respond)) {}
+Front::Front(AccessPolicy policy, Metrics& metrics, Respond respond, Receive receive)
+    : policy_(std::move(policy)),
+      metrics_(metrics),
+      respond_(std::move(respond)),
+      receive_(std::move(receive)) {}
 
 HttpHandlers Front::handlers() {
   return {[this](HttpRequest& request) { return admit(request); },
@@ -46,7 +49,7 @@ std::optional<HttpResponse> Front::admit(HttpRequest& request) const {
   auto admission = server::admit(policy_, request);
   if (!admission) return problem_response(admission.problem());
   request.client = std::move(admission->client);
-  return std::nullopt;
+  return receive_(request);
 }
 
 HttpResponse Front::respond(const HttpRequest& request) const {

@@ -15,8 +15,12 @@ namespace translucube::server {
 class Front {
  public:
   using Respond = std::function<HttpResponse(const HttpRequest&)>;
+  /// Of what was admitted, once its headers are known (HttpHandlers::admit).
+  using Receive = std::function<std::optional<HttpResponse>(HttpRequest&)>;
 
-  Front(AccessPolicy policy, Metrics& metrics, Respond respond);
+  Front(
+      AccessPolicy policy, Metrics& metrics, Respond respond,
+      Receive receive = [](HttpRequest&) { return std::nullopt; });
 
   HttpHandlers handlers();
 
@@ -29,6 +33,7 @@ class Front {
   const AccessPolicy policy_;
   Metrics& metrics_;
   const Respond respond_;
+  const Receive receive_;
   mutable Places scrapes_{4};  ///< of the metrics, at once
 };
 

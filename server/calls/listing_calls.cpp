@@ -9,7 +9,9 @@ HttpResponse get_absorbers(CallContext& context, const HttpRequest&, const PathP
 }
 
 HttpResponse get_environments(CallContext& context, const HttpRequest&, const PathParameters&) {
-  return tagged_json(api::environments_json(context.catalog));
+  const auto uploads = context.uploads.list(api::UploadKind::environment);
+  if (!uploads) return problem_response(uploads.problem());
+  return tagged_json(api::environments_json(context.catalog, *uploads));
 }
 
 HttpResponse get_objects(CallContext& context, const HttpRequest&, const PathParameters&) {

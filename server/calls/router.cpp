@@ -16,9 +16,11 @@ using api::ProblemCode;
 using Parameters = std::array<std::string_view, 7>;
 
 struct Route {
-  std::string_view method, pattern;  ///< "{id}", "{point}" and "{file}" stand for a segment each
+  std::string_view method, pattern;  ///< "{id}" and its like stand for a segment each
   HttpResponse (*handle)(CallContext&, const HttpRequest&, const PathParameters&);
   Parameters query{};  ///< those it knows
+  std::optional<HttpResponse> (*receive)(CallContext&, HttpRequest&,
+                                         const PathParameters&) = nullptr;
 };
 
 constexpr Parameters list_parameters{"cursor", "limit", "status"};
@@ -45,6 +47,9 @@ constexpr std::array routes{
     Route{"POST", "/v1/sweeps/{id}/cancel", cancel_sweep},
     Route{"GET", "/v1/absorbers", get_absorbers},
     Route{"GET", "/v1/environments", get_environments},
+    Route{"PUT", "/v1/environments/{sha256}", put_environment, {}, receive_upload},
+    Route{"GET", "/v1/meshes", get_meshes},
+    Route{"PUT", "/v1/meshes/{sha256}", put_mesh, {}, receive_upload},
     Route{"GET", "/v1/objects", get_objects},
     Route{"GET", "/v1/displays", get_displays},
     Route{"GET", "/", get_page},
@@ -119,7 +124,7 @@ HttpResponse not_carried_out(std::string_view path, std::string_view method,
       method == "OPTIONS"
           ? HttpResponse{204, {}, {}, {}}
           : problem_response({ProblemCode::method_not_allowed, "Allowed here: " + allowed, {}});
-  response.headers.emplace_back("Allow", path == "*" ? "GET, HEAD, POST, DELETE" : allowed);
+  response.headers.emplace_back("Allow", path == "*" ? "GET, HEAD, POST, PUT, DELETE" : allowed);
   return response;
 }
 
@@ -139,6 +144,14 @@ std::string_view route_pattern(std::string_view path) {
   const auto route = std::ranges::find_if(
       routes, [&](const Route& known) { return match(known.pattern, path).has_value(); });
   return route == routes.end() ? "" : route->pattern;
+}
+
+std::optional<HttpResponse> receive(CallContext& context, HttpRequest& request) {
+  for (const Route& route : routes)
+    if (route.receive != nullptr && route.method == request.method)
+      if (const auto parameters = match(route.pattern, request.path))
+        return route.receive(context, request, *parameters);
+  return std::nullopt;
 }
 
 HttpResponse respond(CallContext& context, const HttpRequest& request) {

@@ -124,7 +124,8 @@ void check_places(const RenderOptions& options, const api::RenderRequest& reques
                   OutputFiles& files) {
   files.reads(options.request);
   if (!options.setting.config.empty()) files.reads(options.setting.config);
-  if (const auto* mesh = std::get_if<api::MeshRequest>(&request.object)) files.reads(mesh->file);
+  const auto* mesh = std::get_if<api::MeshRequest>(&request.object);
+  if (mesh && !mesh->file.empty()) files.reads(mesh->file);
   if (const auto* map = std::get_if<api::FileEnvironment>(&request.environment.source))
     files.reads(map->file);
   if (options.stats) files.writes(*options.stats);

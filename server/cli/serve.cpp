@@ -80,8 +80,8 @@ HttpOptions http_options(const ServerConfig& config, const api::Limits& limits) 
   // What may take long is bounded by places of its own: http_threads are left for all else.
   http.answering = config.http_threads;
   http.in_line = 4 * config.http_threads;
-  http.threads =
-      config.http_threads + config.waiting_requests + config.event_streams + config.transfers;
+  http.threads = config.http_threads + config.waiting_requests + config.event_streams +
+                 config.uploads + config.transfers;
   http.transfers = config.transfers;
   http.connections = config.connections;
   http.header_timeout = std::chrono::seconds(config.header_timeout_s);
@@ -126,6 +126,7 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   AccessPolicy policy = access_policy(config);
   const ColorConfig colors(catalog.display_config);
   const DataFolder folder(config.data_folder);
+  catalog.uploads = folder.uploads();
   StoreOptions queue;
   queue.most_queued = config.queue_length;
   queue.interactive_seconds = config.interactive_seconds;
@@ -133,14 +134,22 @@ int serve_or_throw(const ServeOptions& options, std::atomic<int>& signal) {
   mark_crashes(folder.crash_mark());
   const auto store = open_job_store(folder.store_file(), queue);
   ArtifactStore artifacts(folder.artifacts());
+  UploadStore upload_store(folder.uploads(), config.upload_quota_bytes);
   Metrics metrics;
   JobService service(catalog, config, colors, *store, artifacts, folder, metrics);
-  metrics.set_store_gauges([&] { return gauges_of(store->gauges(), service.figures()); });
+  metrics.set_store_gauges([&] {
+    StoreGauges gauges = gauges_of(store->gauges(), service.figures());
+    gauges.upload_bytes = upload_store.bytes();
+    return gauges;
+  });
   // The first look at the disk takes what it takes; from here on nobody waits for one.
   static_cast<void>(service.unready_reason());
-  CallContext context(service, catalog, colors, config);
-  Front front(std::move(policy), metrics,
-              [&](const HttpRequest& request) { return respond(context, request); });
+  Uploads uploads(config, catalog.limits.upload_bytes, *store, upload_store);
+  CallContext context(service, uploads, catalog, colors, config);
+  Front front(
+      std::move(policy), metrics,
+      [&](const HttpRequest& request) { return respond(context, request); },
+      [&](HttpRequest& request) { return receive(context, request); });
   HttpServer server(front.handlers(), http_options(config, catalog.limits));
 
   std::jthread http([&] { server.run(); });

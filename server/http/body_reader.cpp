@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/base/text.h"
+#include "server/base/file.h"
 #include "server/http/grammar.h"
 
 namespace translucube::server {
@@ -94,13 +95,28 @@ void BodyReader::take_data(std::string_view& bytes) {
   bytes.remove_prefix(data.size());
   left_ -= data.size();
   received_ += data.size();
-  if (!too_large())
-    text_ += data;
-  else if (text_.capacity() > 0)
-    text_ = {};
-  if (received_ > longest_drain)
+  if (!keep(data))
+    return refuse(ProblemCode::storage_failure,
+                  "The disk of the service is full or cannot be used.");
+  if (received_ > std::max(longest_drain, limit_))
     return refuse(ProblemCode::payload_too_large, "The body is too large.");
   if (left_ == 0) state_ = state_ == State::length ? State::whole : State::data_end;
+}
+
+/// False where it cannot be written.
+bool BodyReader::keep(std::string_view data) {
+  if (too_large()) {
+    text_ = {};
+    sink_ = nullptr;
+  } else if (!sink_) {
+    text_ += data;
+  } else
+    try {
+      sink_(data);
+    } catch (const FileError&) {
+      return false;
+    }
+  return true;
 }
 
 /// True once `line_` is whole, without its CR LF.

@@ -23,7 +23,7 @@ constexpr std::size_t at_a_time = 1 << 20;
 constexpr std::size_t gathered = 1 << 16;
 // How soon a thread that waits sees that the service stops.
 constexpr milliseconds glance(200);
-constexpr std::chrono::seconds longest_body(60);
+constexpr std::chrono::seconds longest_body(60), longest_file(3600);
 // RFC 9112, 2.2: an empty line before a request is ignored; clients of old send one after a body.
 constexpr std::size_t most_empty_lines = 64;
 
@@ -130,8 +130,9 @@ std::size_t Connection::held() const {
 
 Connection::Time Connection::body_deadline() const {
   const auto earned = milliseconds(moved_ * 1000 / chunk);
+  const milliseconds longest = exchange_->request.body_file ? longest_file : longest_body;
   return std::min({body_moved_ + rules_.patience, body_begun_ + rules_.patience + earned,
-                   body_begun_ + std::max<milliseconds>(longest_body, rules_.patience)});
+                   body_begun_ + std::max(longest, rules_.patience)});
 }
 
 void Connection::acknowledge() {

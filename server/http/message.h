@@ -19,11 +19,15 @@
 
 namespace translucube::server {
 
+class ReceivedFile;
+
 struct HttpRequest {
   std::string method, path;  ///< the path is decoded, without the query
   std::vector<std::pair<std::string, std::string>> query;
   std::map<std::string, std::string> headers;  ///< by lower-case name; repeated ones joined by ", "
   std::string body;
+  /// Where the body goes instead, as it comes: set by what admits the request (server.h).
+  std::shared_ptr<ReceivedFile> body_file = {};
   std::string id = {};      ///< of the request: the client's or a new one, for the log
   std::string client = {};  ///< name of the token it carries, "" where none is needed
   /// A call that waits says so before, so that others are answered meanwhile.

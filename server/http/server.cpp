@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "api/base/text.h"
+#include "server/base/received_file.h"
 #include "server/base/turns.h"
 #include "server/http/answer_writer.h"
 #include "server/http/listener.h"
@@ -137,22 +138,36 @@ struct HttpServer::Impl {
   /// What the head alone is refused for: a body is not read, nor asked for, before.
   std::optional<HttpResponse> refused_before_body(Exchange& exchange) const {
     if (auto refused = handlers.admit(exchange.request)) return refused;
+    if (exchange.request.body_file) pour_into_file(exchange);
     const auto& [method, head] = std::tie(exchange.request.method, exchange.head);
     if (std::ranges::find(methods, method) == methods.end())
       return problem(ProblemCode::not_implemented, "No path has this method.");
     if (head.framing.has_body() && !takes_body(method))
       return problem(ProblemCode::malformed_http, "This method takes no body.");
+    const std::uint64_t most = exchange.body.limit();
     const std::uint64_t longest =
-        head.expects_continue ? options.body_bytes : BodyReader::longest_drain;
-    if (head.framing.length > longest) return too_large();
+        head.expects_continue ? most : std::max(most, BodyReader::longest_drain);
+    if (head.framing.length > longest) return too_large(exchange);
     if (head.expects_more)
       return problem(ProblemCode::expectation_failed, "Only 100-continue can be expected.");
     return std::nullopt;
   }
 
-  HttpResponse too_large() const {
+  static HttpResponse too_large(const Exchange& exchange) {
     return problem(ProblemCode::payload_too_large,
-                   "The body may have " + std::to_string(options.body_bytes) + " bytes.");
+                   "The body may have " + std::to_string(exchange.body.limit()) + " bytes.");
+  }
+
+  static void pour_into_file(Exchange& exchange) {
+    const auto sink = [file = exchange.request.body_file](std::string_view bytes) {
+      try {
+        file->append(bytes);
+      } catch (const FileError& error) {
+        spdlog::error("a body is not kept: {}", error.what());
+        throw;
+      }
+    };
+    exchange.body.pour_into(sink, exchange.request.body_file->limit());
   }
 
   /// Whether more of the body must come. Asks for it where the client wants to be asked (RFC 9110,
@@ -169,10 +184,10 @@ struct HttpServer::Impl {
     BodyReader& body = exchange.body;
     HttpRequest& request = exchange.request;
     if (body.fault()) return problem_response(*body.fault());
-    if (!body.whole() && body.too_large()) return too_large();
+    if (!body.whole() && body.too_large()) return too_large(exchange);
     if (!body.whole())
       return problem(ProblemCode::malformed_http, "The body did not arrive whole.");
-    if (body.too_large()) return too_large();
+    if (body.too_large()) return too_large(exchange);
     const std::string coding = api::lower_case(request.header("content-encoding"));
     if (!coding.empty() && coding != "identity")
       return problem(ProblemCode::unsupported_media_type,
@@ -185,6 +200,7 @@ struct HttpServer::Impl {
     request.give_way = [&turn] { turn.reset(); };
     HttpResponse answer = respond(request);
     request.give_way = nullptr;
+    request.body_file = nullptr;  // its place is free before the client knows
     return answer;
   }
 

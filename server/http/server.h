@@ -46,7 +46,8 @@ struct RequestRecord {
 
 /// What the server calls for each request, from many threads.
 struct HttpHandlers {
-  /// Called with the headers, before a body is read. Sets `client`, or refuses.
+  /// Called with the headers, before a body is read. Sets `client` and, where the body is not for
+  /// memory, `body_file`; or refuses.
   std::function<std::optional<HttpResponse>(HttpRequest&)> admit = [](HttpRequest&) {
     return std::nullopt;
   };

@@ -20,7 +20,6 @@ using api::ProblemCode;
 using std::chrono::seconds;
 
 constexpr seconds between_rounds(1);
-constexpr std::int64_t day_ms = 86'400'000;
 
 /// Code, libraries and answering threads take the rest.
 std::uint64_t memory_of_renders(const ServerConfig& config) {

@@ -3,6 +3,7 @@
 #include "server/service/answers.h"
 #include "server/service/job_service.h"
 #include "server/store/submission.h"
+#include "server/store/upload_store.h"
 
 namespace translucube::server {
 namespace {
@@ -41,6 +42,7 @@ Result<Submission> JobService::submit(std::string_view document,
   const auto request = api::parse_render_request(document, catalog_);
   if (!request) return request.problem();
   if (const auto problem = too_large(*request, 1, "/image")) return *problem;
+  for (const auto& file : api::uploads_of(*request, catalog_)) touch_upload(file);
   const NewJob job = new_job(*request, catalog_, idempotency_key);
   return guarded([&]() -> Result<Submission> {
     if (const auto problem = no_room(job.picture_bytes)) return *problem;

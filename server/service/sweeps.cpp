@@ -7,6 +7,7 @@
 #include "server/service/answers.h"
 #include "server/service/job_service.h"
 #include "server/store/submission.h"
+#include "server/store/upload_store.h"
 
 namespace translucube::server {
 namespace {
@@ -46,6 +47,7 @@ Result<SweepSubmission> JobService::submit_sweep(
   const std::size_t most_lanes =
       std::ranges::max(sweep.images, {}, &std::vector<Picture>::size).size();
   if (const auto problem = too_large(request->base, most_lanes, "/base/image")) return *problem;
+  for (const auto& file : api::uploads_of(request->base, catalog_)) touch_upload(file);
   return guarded([&]() -> Result<SweepSubmission> {
     if (const auto problem = no_room(request->point_count() * sweep.picture_bytes)) return *problem;
     for (const std::vector<Picture>& lanes : sweep.images)

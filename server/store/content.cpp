@@ -2,8 +2,7 @@
 
 #include <sys/stat.h>
 
-#include <algorithm>
-
+#include "api/base/text.h"
 #include "renderer/render.h"
 #include "server/base/ids.h"
 #include "server/base/sha256.h"
@@ -57,15 +56,12 @@ std::string content_key(const api::RenderRequest& request, std::string_view cano
     if (found != catalog.environments.end()) add_file(parts, found->second);
   }
   if (const auto* own = std::get_if<api::FileEnvironment>(&source)) add_file(parts, own->file);
-  if (const auto* mesh = std::get_if<api::MeshRequest>(&request.object))
-    add_file(parts, mesh->file);
+  // Uploads stand in the canonical request by their bytes.
+  const auto* mesh = std::get_if<api::MeshRequest>(&request.object);
+  if (mesh && !mesh->file.empty()) add_file(parts, mesh->file);
   return hex(sha256(parts.bytes()));
 }
 
-bool is_content_key(std::string_view text) {
-  return text.size() == 64 && std::ranges::all_of(text, [](char c) {
-           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-         });
-}
+bool is_content_key(std::string_view text) { return api::is_sha256(text); }
 
 }  // namespace translucube::server

@@ -11,7 +11,8 @@
 namespace translucube::server {
 
 /// SHA-256 over the engine's version, the canonical request and the resources that it names
-/// (absorber: its values; files: size and time of change), as 64 hexadecimal digits. `traced_with`:
+/// (absorber: its values; files: size and time of change; uploads: the hash that names them), as 64
+/// hexadecimal digits. `traced_with`:
 /// the canonical request of another picture that decided how many samples this one took.
 std::string content_key(const api::RenderRequest& request, std::string_view canonical,
                         const api::Catalog& catalog, std::string_view traced_with = {});

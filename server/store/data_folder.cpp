@@ -56,7 +56,7 @@ DataFolder::DataFolder(fs::path folder) : folder_(std::move(folder)) {
   lock_identity_ = identity(folder_ / "lock");
   close_to_others(folder_);
   for (const char* name :
-       {"lock", "jobs.sqlite", "jobs.sqlite-wal", "jobs.sqlite-shm", "artifacts"})
+       {"lock", "jobs.sqlite", "jobs.sqlite-wal", "jobs.sqlite-shm", "artifacts", "uploads"})
     close_to_others(folder_ / name);
   // An empty store would know nothing of what lies there.
   const std::uintmax_t bytes = fs::file_size(store_file(), error);

@@ -20,6 +20,7 @@ class DataFolder {
 
   std::filesystem::path store_file() const { return folder_ / "jobs.sqlite"; }
   std::filesystem::path artifacts() const { return folder_ / "artifacts"; }
+  std::filesystem::path uploads() const { return folder_ / "uploads"; }
   std::filesystem::path crash_mark() const { return folder_ / "crashed"; }
 
   /// Throws StoreError where the folder, its lock or the store's file is no longer what it was when

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "api/request/upload.h"
 #include "server/base/file.h"
 
 namespace translucube::server {
@@ -11,12 +12,15 @@ std::optional<Resource> resource_of(const api::RenderRequest& request, const api
                                     SceneError::Part part) {
   if (part == SceneError::Part::object) {
     const auto* mesh = std::get_if<api::MeshRequest>(&request.object);
-    return mesh ? std::optional(Resource{mesh->file, Setback::Of::request}) : std::nullopt;
+    if (!mesh) return std::nullopt;
+    return Resource{api::file_of(*mesh, catalog), Setback::Of::request};
   }
   if (part != SceneError::Part::environment) return std::nullopt;
   const auto& source = request.environment.source;
   if (const auto* own = std::get_if<api::FileEnvironment>(&source))
     return Resource{own->file, Setback::Of::request};
+  if (const auto* uploaded = std::get_if<api::UploadedEnvironment>(&source))
+    return Resource{api::file_of(*uploaded, catalog), Setback::Of::request};
   if (const auto* named = std::get_if<api::NamedEnvironment>(&source))
     if (const auto found = catalog.environments.find(named->image);
         found != catalog.environments.end())
@@ -45,8 +49,9 @@ std::string without_path(std::string message, const std::filesystem::path& file)
 }
 
 bool is_of_resources(const api::Problem& problem) {
-  constexpr std::array<std::string_view, 4> named{"/environment/image", "/environment/file",
-                                                  "/object/file", "/absorber"};
+  constexpr std::array<std::string_view, 6> named{"/environment/image",  "/environment/file",
+                                                  "/environment/upload", "/object/file",
+                                                  "/object/upload",      "/absorber"};
   return !problem.faults.empty() && std::ranges::all_of(problem.faults, [&](const auto& fault) {
     return fault.pointer.starts_with("/absorbers/") ||
            std::ranges::any_of(named,

@@ -60,7 +60,7 @@ class Generator {
                            {"dark", number(0)}};
     else if (rng_.bits() % 8 == 0)
       scene["ground"] = {{"height_mm", number(-60)}, {"reflectance", number(0.5)}};
-    if (rng_.bits() % 4 == 0) scene["lights"] = {light(), light()};
+    if (rng_.bits() % 8 == 0) scene["lights"] = {light(), light()};
     return {{"material", material},
             {"scene", scene},
             {"image", {{"width", 3}, {"height", 2}}},
@@ -69,7 +69,7 @@ class Generator {
 
  private:
   double number(double usual) {
-    return rng_.bits() % 3 ? usual : extremes[rng_.bits() % extremes.size()];
+    return rng_.bits() % 6 ? usual : extremes[rng_.bits() % extremes.size()];
   }
   json triple(double usual) { return {number(usual), number(usual), number(usual)}; }
   void maybe(json& object, const char* key, double usual) {

@@ -36,9 +36,9 @@ TEST(LightsRequest, TellEveryFault) {
       UnorderedElementsAre("/scene/lights/0/direction", "/scene/lights/0/angular_diameter_deg",
                            "/scene/lights/0/irradiance/1", "/scene/lights/0/radius_mm",
                            "/scene/lights/1/type", "/scene/lights/2/type", "/scene/lights/3",
-                           "/scene/lights/3/type", "/scene/lights/4/center_mm",
-                           "/scene/lights/4/radius_mm", "/scene/lights/4/radiance/2",
-                           "/scene/lights/5/up", "/scene/lights/5/height_mm"));
+                           "/scene/lights/4/center_mm", "/scene/lights/4/radius_mm",
+                           "/scene/lights/4/radiance/2", "/scene/lights/5/up",
+                           "/scene/lights/5/height_mm"));
   EXPECT_THAT(pointers(scene(R"("lights":"above")")), UnorderedElementsAre("/scene/lights"));
   EXPECT_THAT(pointers(scene(R"("lights":{})")), UnorderedElementsAre("/scene/lights"));
   std::string many;

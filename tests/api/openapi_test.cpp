@@ -62,6 +62,9 @@ TEST(OpenApi, DescribesEveryCallOfTheService) {
                                           "post /v1/sweeps/{id}/cancel",
                                           "get /v1/absorbers",
                                           "get /v1/environments",
+                                          "put /v1/environments/{sha256}",
+                                          "get /v1/meshes",
+                                          "put /v1/meshes/{sha256}",
                                           "get /v1/objects",
                                           "get /v1/displays",
                                           "get /livez",
@@ -230,7 +233,7 @@ TEST(OpenApi, AnswersHaveTheKeysOfTheirSchemas) {
   EXPECT_EQ(keys(json::parse(render_list_json({}, {}))), properties(schema("RenderList")));
   EXPECT_EQ(keys(json::parse(absorbers_json(shipped_catalog()))),
             properties(schema("AbsorberList")));
-  EXPECT_EQ(keys(json::parse(environments_json(shipped_catalog()))),
+  EXPECT_EQ(keys(json::parse(environments_json(shipped_catalog(), {}))),
             properties(schema("EnvironmentList")));
   EXPECT_EQ(keys(json::parse(displays_json({}))), properties(schema("DisplayList")));
   EXPECT_EQ(keys(json::parse(to_json(Problem{ProblemCode::internal, "", {{"", ""}}}))),

@@ -117,7 +117,14 @@ TEST(Stats, HaveNullForWhatIsNotFinite) {
   EXPECT_EQ(json::parse(stats_json(stats)), json::parse(R"({
     "samples":64,"seconds":1.25,"cpu_seconds":null,"threads":2,"relative_error":null,
     "transport":"walk","traced_images":1,"nan_samples":1152921504606846976,
-    "truncated_energy":1e-9,"camera_inside":false})"));
+    "truncated_energy":1e-9,"camera_inside":false,"mesh":null})"));
+  stats.mesh = MeshReport{8, 12, 28, 3, 1};
+  EXPECT_EQ(json::parse(stats_json(stats))["mesh"], json::parse(R"({"vertices":8,
+    "triangles":12,"welded_vertices":28,"dropped_triangles":3,"parts":1,
+    "smooth":null})"));
+  stats.refinement = Refinement{12, 768, 0.001, true};
+  EXPECT_EQ(json::parse(stats_json(stats))["mesh"]["smooth"],
+            json::parse(R"({"triangles":768,"chord_error":0.001,"limited":true})"));
 }
 
 TEST(Listings, TellWhatARequestMayName) {
@@ -127,8 +134,9 @@ TEST(Listings, TellWhatARequestMayName) {
   EXPECT_EQ(json::parse(absorbers_json(catalog)),
             json::parse(R"({"absorbers":[{"name":"ink","description":"Ink",
                             "wavelengths_nm":[400.0,700.0],"values":[1.0,0.5]}]})"));
-  EXPECT_EQ(json::parse(environments_json(catalog)),
-            json::parse(R"({"environments":[{"name":"sky"}]})"));
+  EXPECT_EQ(json::parse(environments_json(catalog, {{"00ff", 684, "2026-11-29T12:00:00.000Z"}})),
+            json::parse(R"({"environments":[{"name":"sky"}],"uploads":[{"sha256":"00ff","bytes":684,
+                            "uploaded_at":"2026-11-29T12:00:00.000Z"}]})"));
   EXPECT_EQ(json::parse(displays_json({{"sRGB", {"plain", "raw"}}})),
             json::parse(R"({"displays":[{"name":"sRGB","views":["plain","raw"]}]})"));
 }

@@ -70,8 +70,8 @@ TEST(Request, WidthsThatWouldWrapAreRefused) {
 TEST(Request, IntegersAreNumbersWithoutAFraction) {
   for (const char* width : {"100", "100.0", "1e2", "0.1e3", "10000e-2"})
     EXPECT_EQ(accepted(image(width, "1")).width, 100) << width;
-  for (const char* width : {"2.7", "1e300", "-512.0", "100.00001", "5e-1", "\"512\"", "true",
-                            "null", "[512]"})
+  for (const char* width :
+       {"2.7", "1e300", "-512.0", "100.00001", "5e-1", "\"512\"", "true", "null", "[512]"})
     fault_at("/image/width", image(width, "1"));
 }
 

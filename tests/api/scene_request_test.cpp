@@ -2,6 +2,7 @@
 
 #include "api/request/canonical.h"
 #include "api/request/scene_spec.h"
+#include "api/request/upload.h"
 #include "tests/api/fixture.h"
 #include "tests/support/tiny_map.h"
 
@@ -198,6 +199,28 @@ TEST_F(SceneFiles, OfWhatWasAcceptedAreNotLookedAtAgain) {
   EXPECT_EQ(
       fault_at("/scene/environment/file", environment_file("none.exr"), without_limits(catalog)),
       "there is no such file");
+}
+
+TEST_F(SceneFiles, UploadsAreNamedByTheirHash) {
+  const std::string name(64, 'a');
+  const std::string upload = scene(R"("object":{"type":"mesh","upload":")" + name + R"("},)" +
+                                   R"("environment":{"upload":")" + name + "\"}");
+  EXPECT_THAT(fault_at("/scene/object/upload",
+                       scene(R"("object":{"type":"mesh","upload":")" + name + "\"}")),
+              HasSubstr("only a service has uploads"));
+  catalog.uploads = folder.path() / "uploads";
+  EXPECT_THAT(pointers(upload, catalog),
+              UnorderedElementsAre("/scene/object/upload", "/scene/environment/upload"));
+  const auto file = folder.write("uploads/meshes/" + name, "read when it was sent");
+  EXPECT_THAT(pointers(upload, catalog), UnorderedElementsAre("/scene/environment/upload"));
+  const auto map = folder.write("uploads/environments/" + name, "likewise");
+  const RenderRequest request = accepted(upload, catalog);
+  EXPECT_EQ(accepted(canonical_json(request), catalog), request);
+  EXPECT_THAT(canonical_json(request), HasSubstr(R"({"type":"mesh","upload":")" + name));
+  const SceneSpec spec = scene_spec(request, catalog);
+  EXPECT_EQ(std::get<MeshObject>(spec.object).file, file);
+  EXPECT_EQ(std::get<ImageEnvironmentSpec>(spec.environment.source).file, map);
+  EXPECT_THAT(uploads_of(request, catalog), UnorderedElementsAre(file, map));
 }
 
 TEST_F(SceneFiles, CommandLineMayNameAnyFile) {

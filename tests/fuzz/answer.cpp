@@ -13,7 +13,7 @@ using namespace translucube;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto bytes = std::as_bytes(std::span(data, size));
   try {
-    const TriangleMesh mesh = unpack_mesh(open_answer(bytes));
+    const TriangleMesh mesh = unpack_mesh(open_answer(bytes)).mesh;
     for (const Triangle& t : mesh.triangles)
       for (const std::uint32_t v : t)
         fuzz::require(v < mesh.vertices.size(), "a corner is a vertex");

@@ -2,6 +2,7 @@
 """Seeds for the fuzzers, from the malformed bodies and the OpenAPI document's examples.
 make_corpus.py FOLDER writes FOLDER/{render_request,sweep_request,headers,...}/..."""
 
+import base64
 import json
 import pathlib
 import shutil
@@ -99,6 +100,41 @@ smooth_ply = ply_head.replace("z\n", "z\nproperty float nx\nproperty float ny\np
     "%g %g %g 1 0 0.5\n" % c for c in corners) + "".join("4 %d %d %d %d\n" % q for q in quads)
 meshes = [box.encode(), b"\xef\xbb\xbf# a box\r\n" + box.encode(), ply_ascii.encode(), ply_binary,
           (box + box.replace("f 1", "f -8")).encode(), smooth_box.encode(), smooth_ply.encode()]
+triangles = [(q[0], q[i], q[i + 1]) for q in quads for i in (1, 2)]
+meshes.append(b"solid".ljust(80) + struct.pack("<I", len(triangles)) + b"".join(
+    struct.pack("<3f", 0, 0, 0) + b"".join(struct.pack("<3f", *corners[v]) for v in t) + b"\0\0"
+    for t in triangles))
+meshes.append(("solid box\n" + "".join(
+    "facet normal 0 0 0\nouter loop\n" + "".join("vertex %g %g %g\n" % corners[v] for v in t)
+    + "endloop\nendfacet\n" for t in triangles) + "endsolid box\n").encode())
+buffer = b"".join(struct.pack("<3f", *c) for c in corners) + b"".join(
+    struct.pack("<3H", *t) for t in triangles) + struct.pack("<H6x3f", 0, -1, -1, -1)
+views = [{"buffer": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 72},
+         {"buffer": 0, "byteOffset": 168, "byteLength": 2}, {"buffer": 0, "byteOffset": 176, "byteLength": 12}]
+gltf = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"children": [1], "rotation": [0, 0, 0, 1], "scale": [1, 2, -1]},
+                  {"mesh": 0, "translation": [0, 0, 1]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3",
+                       "sparse": {"count": 1, "indices": {"bufferView": 2, "componentType": 5123},
+                                  "values": {"bufferView": 3}}},
+                      {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"}],
+        "bufferViews": views, "buffers": [{"byteLength": len(buffer)}]}
+
+
+def glb(document, binary):
+    text = json.dumps(document, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
+
+
+embedded = dict(gltf, buffers=[{"byteLength": len(buffer), "uri": "data:application/octet-stream;base64,"
+                                + base64.b64encode(buffer).decode()}])
+meshes += [glb(gltf, buffer), json.dumps(embedded).encode()]
+meshes += [glb(dict(gltf, meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "mode": mode}]}]), buffer)
+           for mode in (5, 6)]
 
 
 def exr(channels, attributes=b""):
@@ -128,7 +164,7 @@ pictures = [exr([b"B", b"G", b"R"]), exr([b"A", b"Y"]), png(2, b"\x80" * 3), png
             hdr + b"-Y 1 +X 2\n" + b"\x80" * 8, hdr + b"+X 2 -Y 1\n" + b"\x80" * 8,
             hdr + b"-Y 1 +X 8\n\x02\x02\0\x08" + b"\x88\x80" * 4]
 answer_head = lambda kind, size: b"TLCREAD1" + struct.pack("<IIQ", kind, 0, size)
-mesh_answer = (struct.pack("<Q12d", 4, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1)
+mesh_answer = (struct.pack("<5Q", 4, 4, 0, 0, 1) + struct.pack("<Q12d", 4, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1)
                + struct.pack("<Q12I", 4, 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3)
                + struct.pack("<Q3d", 1, 0, 0, 1) + struct.pack("<Q12I", 4, *[0] * 12))
 answers = [answer_head(1, len(mesh_answer)) + mesh_answer, answer_head(2, 4) + b"why?"]

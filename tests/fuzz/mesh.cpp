@@ -13,13 +13,13 @@ using namespace translucube;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  const MeshFormat format = bytes.starts_with("ply") ? MeshFormat::ply : MeshFormat::obj;
   try {
-    TriangleMesh mesh = parse_mesh(format, bytes);
+    auto [mesh, report] = parse_mesh(bytes);
     for (const Triangle& t : mesh.triangles)
       for (const std::uint32_t v : t)
         fuzz::require(v < mesh.vertices.size(), "a corner is a vertex");
     const std::size_t triangles = mesh.triangles.size();
+    fuzz::require(report.triangles == triangles, "what is told is what there is");
     close_mesh(mesh);
     fuzz::require(mesh.triangles.size() == triangles, "what is closed stays as it is");
     fuzz::require(mesh.corner_normals.empty() || mesh.corner_normals.size() == triangles,

@@ -38,8 +38,8 @@ std::string obj_box(Vec3 low, Vec3 high, int first = 1, bool flipped = false) {
   return text.str();
 }
 
-TriangleMesh obj(const std::string& text) { return parse_mesh(MeshFormat::obj, text); }
-TriangleMesh ply(const std::string& text) { return parse_mesh(MeshFormat::ply, text); }
+TriangleMesh obj(const std::string& text) { return parse_mesh(MeshFormat::obj, text).mesh; }
+TriangleMesh ply(const std::string& text) { return parse_mesh(MeshFormat::ply, text).mesh; }
 
 std::string refusal(MeshFormat format, const std::string& text) {
   try {
@@ -462,6 +462,8 @@ TEST(MeshAnswer, IsBelievedInNothing) {
       text.append(reinterpret_cast<const char*>(part.data()), part.size());
     };
     const std::uint64_t normals = m.normals.size(), corners = m.corner_normals.size();
+    const MeshReport report{8, 12, 1, 2, 3};
+    add(std::span(&report, 1));
     add(std::span(&vertices, 1));
     add(std::span(m.vertices));
     add(std::span(&triangles, 1));
@@ -474,7 +476,8 @@ TEST(MeshAnswer, IsBelievedInNothing) {
     std::memcpy(bytes.data(), text.data(), text.size());
     return bytes;
   };
-  EXPECT_EQ(unpack_mesh(packed(8, 12, mesh)).triangles.size(), 12u);
+  EXPECT_EQ(unpack_mesh(packed(8, 12, mesh)).mesh.triangles.size(), 12u);
+  EXPECT_EQ(unpack_mesh(packed(8, 12, mesh)).report, (MeshReport{8, 12, 1, 2, 3}));
   for (const auto& [v, t] :
        {std::pair(7u, 12u), {8u, 11u}, {9u, 12u}, {8u, 13u}, {0u, 12u}, {8u, 0u}})
     EXPECT_THROW(unpack_mesh(packed(v, t, mesh)), AnswerError) << v << " " << t;
@@ -491,7 +494,7 @@ TEST(MeshAnswer, IsBelievedInNothing) {
   bad.corner_normals.assign(11, {0, 0, 0});
   EXPECT_THROW(unpack_mesh(packed(8, 12, bad)), AnswerError);
   bad.corner_normals.push_back({0, 0, no_normal});
-  EXPECT_EQ(unpack_mesh(packed(8, 12, bad)).corner_normals, bad.corner_normals);
+  EXPECT_EQ(unpack_mesh(packed(8, 12, bad)).mesh.corner_normals, bad.corner_normals);
   bad.corner_normals[7][1] = 1;
   EXPECT_THROW(unpack_mesh(packed(8, 12, bad)), AnswerError);
   bad.corner_normals[7][1] = 0;

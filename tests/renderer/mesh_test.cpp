@@ -75,7 +75,7 @@ TEST(Mesh, FromObjAndPlyFilesIsTheSameBody) {
   write_obj(mesh, folder / "ball.obj");
   write_ply(mesh, folder / "ball.ply");
   for (const char* name : {"ball.obj", "ball.ply"}) {
-    const TriangleMesh read = read_mesh(folder / name);
+    const TriangleMesh read = read_mesh(folder / name).mesh;
     EXPECT_EQ(read.triangles.size(), mesh.triangles.size()) << name;
     EXPECT_NEAR(volume(read), volume(mesh), 1e-5) << name;
     EXPECT_NO_THROW(check_mesh({folder / name}));

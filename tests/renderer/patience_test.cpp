@@ -63,7 +63,7 @@ TEST(Deadline, OfATimeTargetIsKeptByTheFirstPassToo) {
     EXPECT_LT(result.stats.truncated_energy, 1.001) << work.name;
     EXPECT_EQ(result.stats.nan_samples, 0u) << work.name;
     // A white furnace misses as much light as was given up.
-    if (!std::holds_alternative<UniformEnvironment>(work.scene.environment)) continue;
+    if (!work.scene.environment.uniform()) continue;
     double mean = 0;
     const Image image = develop(result.film);
     for (const float value : image.pixels) mean += double(value) / double(image.pixels.size());

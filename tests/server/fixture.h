@@ -21,6 +21,7 @@
 #include "server/base/places.h"
 #include "server/base/server_config.h"
 #include "server/service/job_service.h"
+#include "server/service/uploads.h"
 #include "server/store/artifact_store.h"
 #include "server/store/data_folder.h"
 #include "server/store/job_store.h"
@@ -30,8 +31,8 @@
 
 namespace translucube::server::test {
 
-/// Made before any thread is, as main() does: spdlog is not instrumented, so ThreadSanitizer does not
-/// see that its registry is made once, by whoever logs first.
+/// Made before any thread is, as main() does: spdlog is not instrumented, so ThreadSanitizer does
+/// not see that its registry is made once, by whoever logs first.
 inline const std::shared_ptr<spdlog::logger> made_before_threads = spdlog::default_logger();
 
 inline const std::string config_path = in_repository("config/service.json");
@@ -122,19 +123,22 @@ struct ServiceOptions {
   std::uint64_t memory_bytes = 0;
   std::uint64_t artifact_bytes = std::uint64_t{20} << 30;
   int keep_days = 36'500;  // stores of old versions are of old dates
+  std::uint64_t upload_bytes = 1 << 20, upload_quota_bytes = std::uint64_t{4} << 30;
 };
 
 /// The whole service but its socket.
 class TestService {
  public:
   TestService(const std::filesystem::path& folder, Engine engine, ServiceOptions options = {})
-      : catalog(api::load_catalog(config_path)),
+      : data(folder),
+        catalog(with_uploads(api::load_catalog(config_path), data.uploads())),
         config(configured(options)),
         colors(catalog.display_config),
-        data(folder),
         own_store(open_job_store(data.store_file(), options.store)),
         store(*own_store),
         artifacts(data.artifacts()),
+        upload_store(data.uploads(), options.upload_quota_bytes),
+        uploads(config, options.upload_bytes, store, upload_store),
         service(catalog, config, colors, store, artifacts, data, metrics, std::move(engine)) {}
 
   api::RenderStatus submit(const std::string& document, std::optional<std::string> key = {}) {
@@ -176,17 +180,24 @@ class TestService {
   /// The folder of a render's picture.
   std::string content(const std::string& id) { return store.pictures(id).at(0).content; }
 
+  DataFolder data;
   api::Catalog catalog;
   ServerConfig config;
   ColorConfig colors;
-  DataFolder data;
   std::unique_ptr<JobStore> own_store;
   JobStore& store;
   ArtifactStore artifacts;
+  UploadStore upload_store;
+  Uploads uploads;
   Metrics metrics;
   JobService service;
 
  private:
+  static api::Catalog with_uploads(api::Catalog catalog, const std::filesystem::path& folder) {
+    catalog.uploads = folder;
+    return catalog;
+  }
+
   static ServerConfig configured(const ServiceOptions& options) {
     api::ConfigFile file(config_path);
     ServerConfig config = read_server_config(file);

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 
+#include "renderer/shape/mesh_collision.h"
+
 namespace translucube {
 namespace {
 
 class Evener {
  public:
-  Evener(TriangleMesh& mesh, double shortest)
-      : mesh_(mesh), shortest2_(shortest * shortest), around_(mesh.vertices.size()) {
+  /// `fixed`: vertices whose triangles stay as they are.
+  Evener(TriangleMesh& mesh, double shortest, const std::vector<bool>& fixed)
+      : mesh_(mesh), shortest2_(shortest * shortest), fixed_(fixed), around_(mesh.vertices.size()) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
       for (const std::uint32_t v : mesh.triangles[t]) around_[v].push_back(t);
     gone_.assign(mesh.triangles.size(), false);
@@ -34,7 +37,9 @@ class Evener {
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
       for (int k = 0; k < 3 && !gone_[t]; ++k) {
         const std::uint32_t u = mesh_.triangles[t][k], v = mesh_.triangles[t][(k + 1) % 3];
-        if (length_squared(at(u) - at(v)) > longest2 || !shares_two_neighbours(u, v)) continue;
+        if (fixed_[u] || fixed_[v] || length_squared(at(u) - at(v)) > longest2 ||
+            !shares_two_neighbours(u, v))
+          continue;
         if (may_move(v, u))
           move(v, u);
         else if (may_move(u, v))
@@ -50,6 +55,7 @@ class Evener {
   void flip(std::uint32_t t, int k) {
     const std::uint32_t a = mesh_.triangles[t][k], b = mesh_.triangles[t][(k + 1) % 3],
                         c = mesh_.triangles[t][(k + 2) % 3];
+    if (fixed_[a] || fixed_[b]) return;
     const auto beyond = std::ranges::find_if(around_[a], [&](std::uint32_t other) {
       return other != t && has(mesh_.triangles[other], b);
     });
@@ -114,8 +120,11 @@ class Evener {
       Triangle moved = mesh_.triangles[t];
       if (has(moved, to)) return true;
       std::ranges::replace(moved, from, to);
-      return fair(moved) || (!fair(mesh_.triangles[t]) &&
-                             longest_squared(moved) <= longest_squared(mesh_.triangles[t]));
+      const Triangle& now = mesh_.triangles[t];
+      // One that folds back would cross its neighbours.
+      return fair(moved) || (!fair(now) && longest_squared(moved) <= longest_squared(now) &&
+                             (faces_its_normals(moved) || !faces_its_normals(now)) &&
+                             dot(area(moved), area(now)) >= 0);
     });
   }
   double longest_squared(const Triangle& t) const {
@@ -144,6 +153,7 @@ class Evener {
 
   TriangleMesh& mesh_;
   double shortest2_;
+  const std::vector<bool>& fixed_;
   std::vector<std::vector<std::uint32_t>> around_;  ///< the triangles of each vertex
   std::vector<bool> gone_;
   std::vector<std::uint32_t> of_u_, of_v_, common_;
@@ -151,6 +161,20 @@ class Evener {
 
 }  // namespace
 
-void even_out(TriangleMesh& mesh, double length) { Evener(mesh, length).run(); }
+void even_out(TriangleMesh& mesh, double length) {
+  constexpr int most_tries = 24;
+  const TriangleMesh given = mesh;
+  std::vector<bool> fixed(given.vertices.size());
+  double radius = 4 * length;
+  for (int i = 0; i < most_tries; ++i, radius *= 1.3) {
+    Evener(mesh, length, fixed).run();
+    const std::vector<std::uint32_t> one_part(mesh.triangles.size());
+    const auto meeting = find_meeting(mesh, one_part);
+    if (!meeting) return;
+    for (std::size_t v = 0; v < fixed.size(); ++v)
+      if (length_squared(given.vertices[v] - meeting->place) < radius * radius) fixed[v] = true;
+    mesh = given;
+  }
+}
 
 }  // namespace translucube

@@ -1,7 +1,6 @@
 #include "renderer/shape/file/mesh_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string>
 
@@ -10,16 +9,8 @@
 #include "renderer/shape/file/mesh_format.h"
 
 namespace translucube {
-namespace {
 
-MeshFormat format_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return std::tolower(c); });
-  if (extension == ".obj") return MeshFormat::obj;
-  if (extension == ".ply") return MeshFormat::ply;
-  throw MeshError("a mesh must be an .obj or .ply file");
-}
+namespace {
 
 template <class T>
 void read_all(AnswerReader& reader, std::vector<T>& values) {
@@ -31,9 +22,11 @@ void read_all(AnswerReader& reader, std::vector<T>& values) {
 
 }  // namespace
 
-TriangleMesh unpack_mesh(std::span<const std::byte> bytes) {
+ClosedMesh unpack_mesh(std::span<const std::byte> bytes) {
   AnswerReader reader(bytes);
-  TriangleMesh mesh;
+  ClosedMesh closed;
+  closed.report = reader.value<MeshReport>();
+  TriangleMesh& mesh = closed.mesh;
   read_all(reader, mesh.vertices);
   read_all(reader, mesh.triangles);
   read_all(reader, mesh.normals);
@@ -53,13 +46,12 @@ TriangleMesh unpack_mesh(std::span<const std::byte> bytes) {
     for (const std::uint32_t n : t)
       if (n != no_normal && n >= mesh.normals.size())
         throw AnswerError("a normal that is not there");
-  return mesh;
+  return closed;
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& file) {
-  const std::string kind = sandbox_kind(format_of(file));
+ClosedMesh read_mesh(const std::filesystem::path& file) {
   try {
-    const SandboxAnswer answer = read_in_sandbox(kind, file);
+    const SandboxAnswer answer = read_in_sandbox(mesh_kind, file);
     return unpack_mesh(open_answer(answer.bytes()));
   } catch (const FileRefused& error) {
     throw MeshError(error.what());

@@ -12,12 +12,12 @@ struct MeshUnavailable : MeshError {
   using MeshError::MeshError;
 };
 
-/// Reads an OBJ or PLY file, by its extension, as the boundary of one body (close_mesh), in a
-/// process without rights. Throws MeshError, and MeshUnavailable where another try may help.
-TriangleMesh read_mesh(const std::filesystem::path& file);
+/// Reads a file of any format of a mesh as the boundary of one body (close_mesh), in a process
+/// without rights. Throws MeshError, and MeshUnavailable where another try may help.
+ClosedMesh read_mesh(const std::filesystem::path& file);
 
 /// A mesh out of that process' answer, which is believed in nothing that memory depends on. Throws
 /// AnswerError.
-TriangleMesh unpack_mesh(std::span<const std::byte> bytes);
+ClosedMesh unpack_mesh(std::span<const std::byte> bytes);
 
 }  // namespace translucube

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <string>
 #include <string_view>
 
 namespace translucube {
@@ -41,6 +43,14 @@ inline std::string_view next_word(std::string_view& rest, std::string_view space
   const std::string_view word = rest.substr(begin, end - begin);
   rest.remove_prefix(end);
   return word;
+}
+
+/// A word of a file in a refusal.
+inline std::string printable(std::string_view word) {
+  std::string text(word.substr(0, 32));
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  return text;
 }
 
 }  // namespace translucube

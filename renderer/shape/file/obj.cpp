@@ -69,13 +69,6 @@ class ObjParser {
          std::to_string(count));
   }
 
-  static std::string printable(std::string_view word) {
-    std::string text(word.substr(0, 32));
-    std::ranges::replace_if(
-        text, [](unsigned char c) { return c < 32 || c > 126; }, '?');
-    return text;
-  }
-
   /// The next line, with those that it continues on (a backslash at its end) put together in
   /// `joined`.
   bool next_line(std::string_view& line, std::string& joined) {

@@ -48,6 +48,20 @@ PolygonMesh parse_obj(std::string_view text);
 /// of the header or the element.
 PolygonMesh parse_ply(std::string_view bytes);
 
+/// STL, ASCII or binary (3D Systems 1989). Its corners are the mesh; normals and attribute bytes
+/// say nothing more. Throws MeshError that names the line or the triangle.
+PolygonMesh parse_stl(std::string_view bytes);
+
+/// By its size: the header of a binary file may say "solid" too.
+bool is_binary_stl(std::string_view bytes);
+/// Why a file is none, for a refusal: "as a binary STL announces ...".
+std::string size_as_binary_stl(std::string_view bytes);
+
+/// glTF 2.0, as GLB or as a document with its buffers embedded (gltf/): the triangles of the
+/// default scene, placed by its nodes, in metres as glTF has them, here in millimetres. Throws
+/// MeshError that names the JSON pointer or the byte.
+PolygonMesh parse_gltf(std::string_view bytes);
+
 /// The faces as triangles: polygons by clipping ears (Meisters 1975), so that concave ones keep
 /// their outline. Throws MeshError for polygons that cross themselves, and for coordinates that
 /// were rounded by more than 1e-5 of the mesh's extent.

@@ -201,7 +201,7 @@ Table one_by_one(Run& run) {
               "What the pieces take in a loop of their own: the best of seven."};
   const int calls = std::max(1000, static_cast<int>(2e5 * std::fmin(1, run.effort)));
   const auto scene = build_scene(peer_scene({1, .1, 10}, 256, 1));
-  const auto& environment = std::get<ImageEnvironment>(scene->environment);
+  const Lighting& environment = scene->environment;
   Rng rng(2);
   std::uint32_t sample = 0;
   const auto measure = [&](const char* name, auto&& call) {
@@ -240,7 +240,7 @@ Table one_by_one(Run& run) {
   measure_batch("environment look-up, at random (SIMD)", EnvironmentBatch::capacity, [&] {
     for (lookups->size = 0; lookups->size < EnvironmentBatch::capacity; ++lookups->size)
       lookups->direction.set(lookups->size, sample_isotropic(rng));
-    lookups->look_up(environment);
+    environment.look_up(*lookups);
     sink = lookups->value[7].pdf;
   });
   auto microsurface = std::make_unique<MicrosurfaceBatch>();

@@ -13,7 +13,9 @@ struct CallsUnderTest {
 
   /// Over the renderer that is not there.
   explicit CallsUnderTest(int workers = 1, StoreOptions store = {})
-      : service(folder.path(), renderer.engine(), {workers, std::move(store)}) {}
+      : CallsUnderTest(ServiceOptions{workers, std::move(store)}) {}
+  explicit CallsUnderTest(ServiceOptions options)
+      : service(folder.path(), renderer.engine(), std::move(options)) {}
   explicit CallsUnderTest(Engine engine) : service(folder.path(), std::move(engine)) {}
 
   HttpResponse get(const std::string& path, Query query = {}, Headers headers = {}) {
@@ -31,7 +33,8 @@ struct CallsUnderTest {
   TempFolder folder;
   FakeRenderer renderer;
   TestService service;
-  CallContext context{service.service, service.catalog, service.colors, service.config};
+  CallContext context{service.service, service.uploads, service.catalog, service.colors,
+                      service.config};
 };
 
 inline std::string header(const HttpResponse& response, const std::string& name) {

@@ -35,8 +35,9 @@ struct Operation {
   /// The first example of its request body, "" where it takes none.
   std::string body() const {
     if (!description.contains("requestBody")) return {};
-    const json& examples = description["requestBody"]["content"]["application/json"]["examples"];
-    return examples.begin()->at("value").dump();
+    const json& content = description["requestBody"]["content"];
+    if (!content.contains("application/json")) return "a file";
+    return content["application/json"]["examples"].begin()->at("value").dump();
   }
 };
 

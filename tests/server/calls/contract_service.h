@@ -14,8 +14,10 @@ inline const std::string no_such_id = "01ARZ3NDEKTSV4RRFFQ69G5FAV";
 
 /// The pattern with an id, the point 0 and a file of the explorer in its places.
 inline std::string path_of(std::string pattern, const std::string& id) {
-  for (const auto& [place, text] :
-       {std::pair<std::string, std::string>{"{id}", id}, {"{point}", "0"}, {"{file}", "style.css"}})
+  for (const auto& [place, text] : {std::pair<std::string, std::string>{"{id}", id},
+                                    {"{point}", "0"},
+                                    {"{file}", "style.css"},
+                                    {"{sha256}", id == no_such_id ? std::string(64, '0') : id}})
     if (const auto at = pattern.find(place); at != pattern.npos)
       pattern.replace(at, place.size(), text);
   return pattern;
@@ -24,8 +26,11 @@ inline std::string path_of(std::string pattern, const std::string& id) {
 /// Answers over a socket, by any means.
 class Served {
  public:
-  explicit Served(Front::Respond respond, AccessPolicy policy = {})
-      : front_(std::move(policy), metrics_, std::move(respond)), server_(front_.handlers(), {}) {
+  explicit Served(
+      Front::Respond respond, AccessPolicy policy = {},
+      Front::Receive receive = [](HttpRequest&) { return std::nullopt; })
+      : front_(std::move(policy), metrics_, std::move(respond), std::move(receive)),
+        server_(front_.handlers(), {}) {
     thread_ = std::jthread([this] { server_.run(); });
     while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -87,8 +92,11 @@ class Caller {
 /// A service of its own folder. Without workers, what it takes stays queued.
 struct Live : CallsUnderTest {
   Live(Contract& contract, int workers, StoreOptions store = {})
-      : CallsUnderTest(workers, std::move(store)),
-        served([this](const HttpRequest& request) { return respond(context, request); }),
+      : Live(contract, ServiceOptions{workers, std::move(store)}) {}
+  Live(Contract& contract, ServiceOptions options)
+      : CallsUnderTest(std::move(options)),
+        served([this](const HttpRequest& request) { return respond(context, request); }, {},
+               [this](HttpRequest& request) { return receive(context, request); }),
         caller(contract, served.port()) {}
 
   Served served;

@@ -4,6 +4,7 @@
 #include "picture/image_format.h"
 #include "tests/server/calls/contract_service.h"
 #include "tests/server/http/sockets.h"
+#include "tests/server/tiny_uploads.h"
 
 namespace translucube::server::test {
 namespace {
@@ -87,6 +88,7 @@ void provoke_without_store(Contract& contract) {
   const std::string index = store.string() + "-shm";
   std::fstream(index, std::ios::binary | std::ios::in | std::ios::out)
       << std::string(std::filesystem::file_size(index), '\0');
+  std::filesystem::remove_all(broken.service.data.uploads());
   for (const Operation& operation : contract.operations())
     if (operation.has(507)) {
       const Answer answer =
@@ -210,6 +212,22 @@ void provoke_events(Contract& contract) {
   }
 }
 
+void provoke_uploads(Contract& contract) {
+  Live idle(contract, 0);
+  for (const auto& [put, bytes] : {std::pair<std::string, std::string>{"putMesh", tetrahedron},
+                                   {"putEnvironment", tiny_map}}) {
+    const std::string name = hex(sha256(bytes));
+    idle.caller.call(put, 201, name, "", {}, bytes);
+    idle.caller.call(put, 200, name, "", {}, bytes);
+    idle.caller.call(put, 422, name, "", {}, bytes + "more");
+    idle.caller.call(put, 413, name, "", {}, large_body());
+    idle.caller.call(put, 415, name, "", {{"Content-Encoding", "gzip"}}, bytes);
+  }
+  const json there = idle.caller.call("listMeshes", 200).value();
+  EXPECT_EQ(there["meshes"].size(), 1u);
+  EXPECT_EQ(idle.caller.call("listEnvironments", 200).value()["uploads"].size(), 1u);
+}
+
 TEST(ContractTest, EveryAnswerIsDescribedAndEveryDescriptionIsTrue) {
   Contract contract;
   provoke_at_the_door(contract);
@@ -221,6 +239,7 @@ TEST(ContractTest, EveryAnswerIsDescribedAndEveryDescriptionIsTrue) {
       contract, {"createSweep", "getSweep", "listSweeps", "cancelSweep", "deleteSweep", small_sweep,
                  R"({"base":)" + small_request(8) + "}"});
   provoke_images(contract);
+  provoke_uploads(contract);
   provoke_sweeps_own(contract);
   provoke_events(contract);
 
@@ -254,7 +273,9 @@ TEST(ContractTest, EveryExampleOfARequestIsAccepted) {
   int posted = 0;
   for (const Operation& operation : contract.operations()) {
     if (!operation.description.contains("requestBody")) continue;
-    const json& content = operation.description["requestBody"]["content"]["application/json"];
+    const json& contents = operation.description["requestBody"]["content"];
+    if (!contents.contains("application/json")) continue;  // a file
+    const json& content = contents["application/json"];
     for (const auto& [name, example] : content["examples"].items()) {
       SCOPED_TRACE(name);
       contract.expect_fits(content["schema"], example["value"]);

@@ -65,12 +65,14 @@ TEST(EventStreamTest, ReplaysWhatCameAfterTheLastEventAlsoAfterARestart) {
   std::string id, before;
   {
     TestService service(folder.path(), renderer.engine());
-    CallContext context{service.service, service.catalog, service.colors, service.config};
+    CallContext context{service.service, service.uploads, service.catalog, service.colors,
+                        service.config};
     id = service.wait(service.submit(small_request(16)).id).id;
     before = whole(respond(context, {"GET", "/v1/renders/" + id + "/events", {}, {}, {}}));
   }
   TestService service(folder.path(), renderer.engine());
-  CallContext context{service.service, service.catalog, service.colors, service.config};
+  CallContext context{service.service, service.uploads, service.catalog, service.colors,
+                      service.config};
   const auto all = events_in(before);
   const auto rest = events_in(whole(respond(
       context, {"GET", "/v1/renders/" + id + "/events", {}, {{"last-event-id", "2"}}, {}})));

@@ -96,7 +96,7 @@ TEST(PreconditionsTest, OptionsOfTheWholeServiceAndOfAPath) {
   Conditions tested;
   const HttpResponse all = tested.ask("OPTIONS", "*", {});
   EXPECT_EQ(all.status, 204);
-  EXPECT_EQ(header(all, "Allow"), "GET, HEAD, POST, DELETE");
+  EXPECT_EQ(header(all, "Allow"), "GET, HEAD, POST, PUT, DELETE");
   EXPECT_EQ(tested.ask("OPTIONS", "/v1/nowhere", {}).status, 404);
   EXPECT_EQ(header(tested.ask("OPTIONS", "/v1/renders", {}), "Allow"), "POST, GET, HEAD");
 }
