@@ -46,7 +46,7 @@ TriangleMesh smooth_ball(int levels) {
 
 TEST(SmoothBall, OfFewTrianglesLooksLikeTheSphere) {
   for (const Material& m : {material(1.5, 0, 4), material(1.5, 0.2, 1)})
-    for (const int levels : {2, 4}) {
+    for (const int levels : {2, 3}) {
       constexpr int size = 32;
       Scene sphere = body(Sphere{}, m), ball = mesh_body(smooth_ball(levels), m);
       for (Scene* scene : {&sphere, &ball}) {
@@ -54,11 +54,11 @@ TEST(SmoothBall, OfFewTrianglesLooksLikeTheSphere) {
         look_from_afar(*scene, 1.1, size);
         scene->seed = scene == &ball ? 2 : 1;
       }
-      const Film a = trace(sphere, 256), b = trace(ball, 256);
+      const Film a = trace(sphere, 128), b = trace(ball, 96);
       const Measured mean_a = image_mean(a), mean_b = image_mean(b);
       const double error = std::hypot(mean_a.standard_error, mean_b.standard_error);
       EXPECT_NEAR(mean_a.mean, mean_b.mean, 4 * error + 1e-4);
-      EXPECT_LT(error / mean_a.mean, 4e-3);
+      EXPECT_LT(error / mean_a.mean, 6e-3);
       // Block by block, each of 4 x 4 pixels: the largest of 64 normal numbers is below 4.3 in 999
       // of 1000 cases.
       const Image picture_a = develop(a), picture_b = develop(b), spread_a = variance(a),
