@@ -1,8 +1,6 @@
 // A sun of 33,664 in the environment, which paths alone would hardly ever find: what noise and
 // fireflies are left.
 
-#include <algorithm>
-
 #include "renderer/scene/scene.h"
 #include "tests/bench/speed/images.h"
 #include "tests/bench/speed/sections.h"
@@ -32,16 +30,6 @@ Cost cost_of(const Rendered& a, const Rendered& b, const Image& reference) {
   const RelMse error = rel_mse_of_pair(a.image, b.image, reference);
   const double seconds = (a.cpu_seconds + b.cpu_seconds) / 2;
   return {error.trimmed * seconds, error.untrimmed * seconds};
-}
-
-/// Over the pixels, of those bright enough to be seen.
-double largest_ratio(const Image& image, const Image& reference) {
-  constexpr float visible = 0.01f;
-  double ratio = 0;
-  for (std::size_t i = 0; i < image.pixels.size(); ++i)
-    ratio = std::max(
-        ratio, double(image.pixels[i]) / std::max(double(reference.pixels[i]), double(visible)));
-  return ratio;
 }
 
 }  // namespace

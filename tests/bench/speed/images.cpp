@@ -1,5 +1,7 @@
 #include "tests/bench/speed/images.h"
 
+#include <algorithm>
+
 namespace translucube::speed {
 std::vector<Snapshot> trace(const Scene& scene, const std::vector<std::uint32_t>& samples,
                             int threads, TraceCounters* counters) {
@@ -13,6 +15,24 @@ std::vector<Snapshot> trace(const Scene& scene, const std::vector<std::uint32_t>
   }
   if (counters) *counters = film.counters;
   return snapshots;
+}
+
+double mean_value(const std::vector<Image>& images) {
+  double sum = 0, count = 0;
+  for (const Image& image : images) {
+    for (const float p : image.pixels) sum += p;
+    count += static_cast<double>(image.pixels.size());
+  }
+  return sum / count;
+}
+
+double largest_ratio(const Image& image, const Image& converged) {
+  constexpr float visible = 0.01f;
+  double ratio = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    ratio = std::max(
+        ratio, double(image.pixels[i]) / std::max(double(converged.pixels[i]), double(visible)));
+  return ratio;
 }
 
 RelMse Pair::error() const { return rel_mse_of_pair(a, b, reference_of({a, b}, coefficients)); }

@@ -31,6 +31,12 @@ struct Snapshot {
 std::vector<Snapshot> trace(const Scene& scene, const std::vector<std::uint32_t>& samples,
                             int threads, TraceCounters* counters = nullptr);
 
+/// Over all pixels and channels of images of one size.
+double mean_value(const std::vector<Image>& images);
+/// The largest pixel over its converged value, of those bright enough to be seen (of at least
+/// 0.01).
+double largest_ratio(const Image& image, const Image& converged);
+
 /// Two independent renders of a spec, and what they cost.
 struct Pair {
   Image a, b;

@@ -67,8 +67,7 @@ void add_own_options(CLI::App& app, Run& run) {
   app.add_option("--samples", run.material_samples,
                  "camera samples in the sections `materials` and `single`")
       ->check(CLI::Range(1, 1 << 20));
-  app.add_option("--sun", run.sun,
-                 "sunrise.exr; looked for in config/environments")
+  app.add_option("--sun", run.sun, "sunrise.exr; looked for in config/environments")
       ->check(CLI::ExistingFile);
   app.add_flag("--cycles", run.cycles,
                "render the same in Blender's Cycles, where it is installed");
