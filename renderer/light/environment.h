@@ -36,6 +36,10 @@ struct UniformEnvironment {
 /// Which part of a map is seen: a plane behind the body hides what lies towards -z, one below it
 /// what lies towards -y.
 enum class EnvironmentSide { all, front, above };
+inline bool is_hidden(EnvironmentSide side, Vec3 direction) {
+  return (side == EnvironmentSide::front && direction.z < 0) ||
+         (side == EnvironmentSide::above && direction.y < 0);
+}
 
 /// The place of a direction in a map.
 struct MapCoordinates {
@@ -79,9 +83,7 @@ class ImageEnvironment {
 
  private:
   EnvironmentValue seen(Vec3 direction, EnvironmentValue value) const {
-    if ((side_ == EnvironmentSide::front && direction.z < 0) ||
-        (side_ == EnvironmentSide::above && direction.y < 0))
-      value.radiance = {};
+    if (is_hidden(side_, direction)) value.radiance = {};
     return value;
   }
   /// Whether all of a column of cells is hidden.

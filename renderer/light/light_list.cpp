@@ -8,11 +8,7 @@ LightList::LightList(const Lighting& lighting, std::uint64_t key) {
   if (lighting.uniform()) return;
   Rng rng(key);
   radiance.resize(size);
-  std::vector<Sample2> numbers;
-  numbers.reserve(size);
-  for (std::uint32_t i = 0; i < size; ++i)
-    numbers.push_back({(i + rng.uniform()) / size, rng.uniform()});
-  const std::vector<EnvironmentSample> lights = lighting.sample(numbers);
+  const std::vector<EnvironmentSample> lights = lighting.sample_each(size, rng);
   for (std::uint32_t i = 0; i < size; ++i) {
     direction.set(i, lights[i].direction);
     pdf[i] = static_cast<float>(lights[i].value.pdf);

@@ -178,6 +178,15 @@ std::vector<EnvironmentSample> Lighting::sample(std::span<const Sample2> u) cons
   return samples;
 }
 
+std::vector<EnvironmentSample> Lighting::sample_each(std::size_t count, Rng& rng) const {
+  std::vector<Sample2> numbers;
+  numbers.reserve(count);
+  const auto n = static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i)
+    numbers.push_back({(static_cast<double>(i) + rng.uniform()) / n, rng.uniform()});
+  return sample(numbers);
+}
+
 std::array<Rgb, 3> Lighting::irradiance_by_order(Vec3 n) const {
   std::array<Rgb, 3> orders;
   if (const auto* image = std::get_if<ImageEnvironment>(&environment_))

@@ -46,8 +46,7 @@ class Lighting {
   Lighting(UniformEnvironment environment) : Lighting(Environment(environment)) {}
   Lighting(ImageEnvironment environment) : Lighting(Environment(std::move(environment))) {}
   Lighting(Environment environment, std::vector<Sun> suns = {},
-                    std::vector<AreaLight> area_lights = {},
-                    EnvironmentSide side = EnvironmentSide::all);
+           std::vector<AreaLight> area_lights = {}, EnvironmentSide side = EnvironmentSide::all);
 
   /// Where light is the same from all directions there is nothing to look for: else null.
   const UniformEnvironment* uniform() const;
@@ -56,6 +55,8 @@ class Lighting {
   EnvironmentSample sample(Sample2 u) const;
   /// Many directions, quickest where u.u ascends.
   std::vector<EnvironmentSample> sample(std::span<const Sample2> u) const;
+  /// One in each of `count` equal parts of the density.
+  std::vector<EnvironmentSample> sample_each(std::size_t count, Rng& rng) const;
   /// The light from far away along a direction, and the density of drawing it.
   EnvironmentValue value_from(Vec3 direction) const;
   void look_up(EnvironmentBatch& batch) const;
@@ -81,10 +82,7 @@ class Lighting {
   };
   static Cone cone_of(const AreaLight& lamp);
   void add_lamps(Vec3 direction, EnvironmentValue& value) const;
-  bool hides(Vec3 d) const {
-    return (side_ == EnvironmentSide::front && d.z < 0) ||
-           (side_ == EnvironmentSide::above && d.y < 0);
-  }
+  bool hides(Vec3 d) const { return is_hidden(side_, d); }
   EnvironmentValue environment_from(Vec3 direction) const;
   EnvironmentSample sample_environment(Sample2 u) const;
 

@@ -45,7 +45,8 @@ struct Scene {
   std::optional<OiledPart> oiled;  ///< of a rough interface
   AnyInterior interior;
   Lighting environment;
-  std::optional<Backdrop> backdrop;  ///< with it, the environment shows its front half only
+  std::optional<Backdrop>
+      backdrop;  ///< or the ground: the environment shows the half before it only
   Camera camera;
   bool camera_inside = false;
   std::vector<Lane> lanes;          ///< of the film, unless it is explorable; [0] is the material's

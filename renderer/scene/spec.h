@@ -20,7 +20,7 @@ struct SphereObject {
   friend bool operator==(const SphereObject&, const SphereObject&) = default;
 };
 struct MeshObject {
-  std::filesystem::path file;  ///< OBJ or PLY, in millimetres, closed
+  std::filesystem::path file;  ///< of a format of shape/file/mesh_format.h, closed
   /// Whether its triangles stand for curved surfaces (shape/smooth); not given: if its file has
   /// normals that say so.
   std::optional<bool> smooth = {};

@@ -146,9 +146,10 @@ class Tracer {
   void arrive(const SphereWalk::Arrivals& arrivals, std::span<const Path> paths);
   /// Finds where a path comes to the boundary; false if it lost its way.
   bool walk_alone(Path& path, Hit& hit);
-  template <class Place>
-  bool walk_to_boundary(const Place& place, const Medium& medium, Particle& particle, Rng& rng,
-                        Hit& hit);
+  /// `around`: the place as a walk asks it; `collide`: what happens between flights.
+  template <class Place, class Around, class Moving, class Collide>
+  bool walk_to_boundary(const Place& place, Around&& around, const Medium& medium, Moving& moving,
+                        Rng& rng, Hit& hit, Collide&& collide);
   /// At a collision: looks for light, then a new direction or a large step.
   template <class Place>
   void collide_alone(Place&& around, Path& path);

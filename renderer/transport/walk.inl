@@ -73,19 +73,17 @@ bool Tracer<Body>::walk_alone(Path& path, Hit& hit) {
     auto&& around = surroundings(shape_, interior_.medium);
     if (path.colliding) collide_alone(around, path);
     path.colliding = false;
-    ++tile_.counters.flights;
-    while (fly(around, interior_.medium, path, rng, hit)) {
-      ++tile_.counters.flights;
-      if (strayed(shape_, path) || out_of_time(256)) return false;
-      collide_alone(around, path);
-    }
+    const auto collide = [&](Path& at) { collide_alone(around, at); };
+    if (!walk_to_boundary(shape_, around, interior_.medium, path, rng, hit, collide)) return false;
     if (path.vertex.connected()) path.vertex.flight = hit.t;
     return true;
   } else if constexpr (Body::inside.half_space) {
     // In the half space below the point where it entered, to leave at that very point.
     const Frame frame(path.n);
     Particle below{{}, frame.to_local(path.d), path.length};
-    if (!walk_to_boundary(HalfSpace{}, interior_.medium, below, rng, hit)) return false;
+    constexpr HalfSpace place;
+    const auto collide = [&](Particle& at) { scatter(place, interior_.medium, at, rng); };
+    if (!walk_to_boundary(place, place, interior_.medium, below, rng, hit, collide)) return false;
     path.d = frame.to_world(below.d);
     path.length = below.length;
     hit.p = path.p;
@@ -97,15 +95,14 @@ bool Tracer<Body>::walk_alone(Path& path, Hit& hit) {
 }
 
 template <class Body>
-template <class Place>
-bool Tracer<Body>::walk_to_boundary(const Place& place, const Medium& medium, Particle& particle,
-                                    Rng& rng, Hit& hit) {
-  auto&& around = surroundings(place, medium);
+template <class Place, class Around, class Moving, class Collide>
+bool Tracer<Body>::walk_to_boundary(const Place& place, Around&& around, const Medium& medium,
+                                    Moving& moving, Rng& rng, Hit& hit, Collide&& collide) {
   ++tile_.counters.flights;
-  while (fly(around, medium, particle, rng, hit)) {
+  while (fly(around, medium, moving, rng, hit)) {
     ++tile_.counters.flights;
-    if (strayed(place, particle) || out_of_time(256)) return false;
-    scatter(around, medium, particle, rng);
+    if (strayed(place, moving) || out_of_time(256)) return false;
+    collide(moving);
   }
   return true;
 }

@@ -28,10 +28,7 @@ class FacetConnector {
         ior_(std::get<SmoothInterface>(scene.interface).ior) {
     if (!active()) return;
     Rng rng(key);
-    std::vector<Sample2> numbers;
-    for (std::uint32_t i = 0; i < drawn; ++i)
-      numbers.push_back({(i + rng.uniform()) / drawn, rng.uniform()});
-    for (const EnvironmentSample& light : lighting_.sample(numbers))
+    for (const EnvironmentSample& light : lighting_.sample_each(drawn, rng))
       if (is_bright(light.value)) lights_.push_back(light);
     share_ = static_cast<double>(lights_.size()) / drawn;
   }

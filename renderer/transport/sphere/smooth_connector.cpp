@@ -15,12 +15,7 @@ SmoothConnector::SmoothConnector(const Scene& scene, Collector& collector, std::
   std::vector<float> shares;
   for (const Lane& lane : scene.lanes) shares.push_back(carried_share(lane));
   collector_.set_carried_shares(std::move(shares));
-  std::vector<Sample2> numbers;
-  numbers.reserve(LightStrata::size);
-  for (std::size_t i = 0; i < LightStrata::size; ++i)
-    numbers.push_back(
-        {(static_cast<double>(i) + rng_.uniform()) / LightStrata::size, rng_.uniform()});
-  lights_ = lighting_.sample(numbers);
+  lights_ = lighting_.sample_each(LightStrata::size, rng_);
   for (std::size_t i = 0; i < LightStrata::size; ++i) strata_.set(i, lights_[i].direction);
 }
 
